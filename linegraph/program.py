@@ -1,0 +1,194 @@
+"""Stage 5: a `Program`, the one thing code generation sees.
+
+Named arguments, single assignments in order, named results. Nothing in it knows of bodies or joints; what
+a reader should know of them stands in the labels and in the texts of the `Module`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from linegraph.expression import NEG, SUB, SYMBOL, Node, Operand
+
+INLINE_LIMIT = 6
+"""An expression used once is written in place while the line stays below this many operations."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A coordinate, input or parameter, as the head of an emitted file lists it."""
+
+    name: str
+    unit: str
+    about: str = ""
+    value: float | None = None
+
+
+@dataclass(frozen=True)
+class Argument:
+    """What a function is given: an array of `size` numbers, ``p`` (the parameters) or ``t`` (a number)."""
+
+    name: str
+    size: int | None
+    about: str
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a function returns: a dense array, its `entries` row-major."""
+
+    name: str
+    shape: tuple[int, ...]
+    entries: tuple[Operand, ...]
+    about: str
+
+
+@dataclass(frozen=True)
+class Check:
+    """After `node` is known: unless ``node > bound``, stop with `status`, results untouched."""
+
+    node: Node
+    bound: Operand
+    status: int
+    about: str
+
+
+@dataclass(frozen=True)
+class Call:
+    """Run another program first; its results become local arrays of these names and sizes."""
+
+    program: str
+    arguments: tuple[str, ...]
+    results: tuple[Argument, ...]
+
+
+@dataclass(frozen=True)
+class Program:
+    """One function: ``results = name(arguments)``.
+
+    Attributes:
+        steps: the nodes that get a name of their own, in an order in which each follows its operands.
+        turned: indices of differences a - b that are computed as b - a, since only their negative is used.
+    """
+
+    name: str
+    about: str
+    arguments: tuple[Argument, ...]
+    steps: tuple[Node, ...]
+    results: tuple[Result, ...]
+    turned: frozenset[int] = frozenset()
+    checks: tuple[Check, ...] = ()
+    calls: tuple[Call, ...] = ()
+
+    @property
+    def operations(self) -> int:
+        """Arithmetic operations and function calls executed: every node once, signs included."""
+        live = _live(_roots(self.results, self.checks))
+        return sum(_cost(node, self.turned) for node in live)
+
+
+@dataclass(frozen=True)
+class Module:
+    """All functions of one model and what their reader must know.
+
+    Attributes:
+        name: the prefix of everything emitted; an identifier.
+        about: paragraphs for the head of the file.
+        time: whether the functions take the time ``t``.
+    """
+
+    name: str
+    about: tuple[str, ...]
+    positions: tuple[Quantity, ...]
+    velocities: tuple[Quantity, ...]
+    inputs: tuple[Quantity, ...]
+    parameters: tuple[Quantity, ...]
+    time: bool
+    programs: tuple[Program, ...]
+
+
+def assemble(
+    name: str,
+    about: str,
+    arguments: tuple[Argument, ...],
+    results: tuple[Result, ...],
+    checks: tuple[Check, ...] = (),
+    calls: tuple[Call, ...] = (),
+) -> Program:
+    """Keep what the results need, put it in order and decide which nodes get a name.
+
+    A node is named when it is used more than once or when the line would grow past `INLINE_LIMIT`.
+    """
+    live = _live(_roots(results, checks))
+    uses, negated = _count_uses(live, results, checks)
+    turned = frozenset(
+        node.index
+        for node in live
+        if node.op == SUB and uses[node.index] == negated.get(node.index, 0)
+    )
+    steps = _named(live, uses, {check.node.index for check in checks})
+    return Program(name, about, arguments, steps, results, turned, checks, calls)
+
+
+def _roots(results: tuple[Result, ...], checks: tuple[Check, ...]) -> list[Node]:
+    roots = [entry for result in results for entry in result.entries if isinstance(entry, Node)]
+    for check in checks:
+        roots += [x for x in (check.node, check.bound) if isinstance(x, Node)]
+    return roots
+
+
+def _live(roots: Iterable[Node]) -> list[Node]:
+    """All nodes that `roots` depend on, in order of construction; without recursion."""
+    found = {node.index: node for node in roots}
+    pending = list(found.values())
+    while pending:
+        node = pending.pop()
+        for operand in (node.a, node.b):
+            if isinstance(operand, Node) and operand.index not in found:
+                found[operand.index] = operand
+                pending.append(operand)
+    return [found[index] for index in sorted(found)]
+
+
+def _count_uses(
+    live: list[Node], results: tuple[Result, ...], checks: tuple[Check, ...]
+) -> tuple[dict[int, int], dict[int, int]]:
+    """How often each node is used, and how often of that only to be negated."""
+    uses = dict.fromkeys((node.index for node in live), 0)
+    negated: dict[int, int] = {}
+    for node in live:
+        for operand in (node.a, node.b):
+            if isinstance(operand, Node):
+                uses[operand.index] += 1
+        if node.op == NEG:
+            negated[node.a.index] = 1
+    for root in _roots(results, checks):
+        uses[root.index] += 1
+    return uses, negated
+
+
+def _named(live: list[Node], uses: dict[int, int], forced: set[int]) -> tuple[Node, ...]:
+    """The nodes worth a name: shared ones, checked ones and those that would make a line too long."""
+    size: dict[int, int] = {}
+    named = []
+    for node in live:
+        index = node.index
+        if node.op == SYMBOL:
+            size[index] = 0
+            continue
+        total = 1
+        for operand in (node.a, node.b):
+            if isinstance(operand, Node):
+                total += size[operand.index]
+        if node.op != NEG and (uses[index] > 1 or total > INLINE_LIMIT or index in forced):
+            named.append(node)
+            total = 0
+        size[index] = total
+    return tuple(named)
+
+
+def _cost(node: Node, turned: frozenset[int]) -> int:
+    if node.op == SYMBOL:
+        return 0
+    return 0 if node.op == NEG and node.a.index in turned else 1
