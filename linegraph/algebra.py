@@ -1,0 +1,54 @@
+"""What a derivation is written over: scalars that know + - * / and these few functions.
+
+The same derivation runs over three algebras:
+
+    expression.Dag      nodes           programs to emit, costs to count
+    symbols.Sympy       sympy           closed forms for people
+    algebra.Floats      floats          the numeric reference
+
+Numbers belong to every algebra.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Protocol
+
+from linegraph.vector import Scalar
+
+
+class Algebra(Protocol):
+    """The functions a derivation may apply to a scalar."""
+
+    def symbol(self, argument: str, place: int | str | None = None) -> Scalar:
+        """The scalar standing at `place` of an argument: ``q, 3`` or ``p, "mass"`` or ``t, None``."""
+
+    def sin(self, x: Scalar) -> Scalar:
+        """Sine of an angle in radians."""
+
+    def cos(self, x: Scalar) -> Scalar:
+        """Cosine of an angle in radians."""
+
+    def sqrt(self, x: Scalar) -> Scalar:
+        """The non-negative square root."""
+
+
+class Floats:
+    """Double precision: the algebra in which a derivation simply computes.
+
+    Args:
+        arguments: the numbers of each argument, by name: a sequence, a mapping or one number.
+    """
+
+    def __init__(self, **arguments: Scalar) -> None:
+        """Keep the numbers that `symbol` looks up."""
+        self._arguments = arguments
+
+    def symbol(self, argument: str, place: int | str | None = None) -> Scalar:
+        """The number given for this place."""
+        given = self._arguments[argument]
+        return given if place is None else given[place]
+
+    sin = staticmethod(math.sin)
+    cos = staticmethod(math.cos)
+    sqrt = staticmethod(math.sqrt)

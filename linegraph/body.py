@@ -1,0 +1,125 @@
+"""The rigid body: a multiterminal component with edges in translation and rotation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from linegraph.domains import ROTATION, TRANSLATION
+from linegraph.errors import ModelError
+from linegraph.graph import Edge
+from linegraph.parameters import is_number
+from linegraph.rotation import IDENTITY_MATRIX, Inertia, about, from_rpy
+from linegraph.vector import ZERO, Matrix, Vector
+
+GROUND = "ground"
+MASS_CENTER = "mass_center"
+
+_AXES = ("xx", "xy", "xz", "yy", "yz", "zz")
+
+
+class Placement(NamedTuple):
+    """A frame on a body: its origin and its axes, both in the body's frame."""
+
+    at: Vector
+    rotation: Matrix
+
+
+@dataclass(frozen=True)
+class Body:
+    """A rigid body.
+
+    Terminal graph, once in translation and once in rotation: the inertia edge from ground to the mass
+    centre, whose through variable is the d'Alembert force -m v̇ (torque -(I ω̇ + ω x I ω)), and an arm
+    from the mass centre to the body's own frame and to each named frame.
+
+    Attributes:
+        mass: kg.
+        center: mass centre in the body's frame (m); None where `first` is given instead.
+        first: first moment of mass in the body's frame (kg m), instead of `center`.
+        inertia: (xx, xy, xz, yy, yz, zz) in body axes (kg m^2), tensor entries: about the mass centre,
+            or about the body's origin where `first` is given.
+        frames: placement of each named frame.
+    """
+
+    name: str
+    mass: Any = 0
+    center: Vector | None = ZERO
+    first: Vector | None = None
+    inertia: Inertia = (0, 0, 0, 0, 0, 0)
+    frames: Mapping[str, Placement] = field(default_factory=dict)
+
+    def edges(self) -> list[Edge]:
+        """The terminal graph."""
+        center = f"{self.name}.{MASS_CENTER}"
+        edges = []
+        for domain in (TRANSLATION.name, ROTATION.name):
+            edges.append(Edge(f"{self.name}/inertia", self.name, domain, GROUND, center))
+            edges.append(Edge(f"{self.name}/arm", self.name, domain, center, self.name))
+            edges += [
+                Edge(f"{self.name}/arm.{frame}", self.name, domain, center, f"{self.name}.{frame}")
+                for frame in self.frames
+            ]
+        return edges
+
+    def placement(self, vertex: str) -> Placement:
+        """Where a terminal of this body is."""
+        if vertex == self.name:
+            return Placement(ZERO, IDENTITY_MATRIX)
+        return self.frames[vertex[len(self.name) + 1 :]]
+
+
+def inertia_of(given: Any, who: str) -> Inertia:
+    """An inertia tensor from what a user may write: (xx, yy, zz), a 3 x 3 matrix, or named entries.
+
+    Raises:
+        ModelError: another shape, an unknown entry, or a matrix that is not symmetric.
+    """
+    if isinstance(given, Mapping):
+        unknown = [key for key in given if key not in _AXES]
+        if unknown:
+            raise ModelError(who, f"unknown inertia entry {unknown[0]!r}; entries are {', '.join(_AXES)}")
+        return tuple(given.get(key, 0) for key in _AXES)  # type: ignore[return-value]
+    rows = [list(row) if isinstance(row, Sequence) else row for row in given]
+    if len(rows) == 3 and not any(isinstance(row, list) for row in rows):
+        return (rows[0], 0, 0, rows[1], 0, rows[2])
+    if len(rows) != 3 or any(not isinstance(row, list) or len(row) != 3 for row in rows):
+        raise ModelError(who, "inertia must be (xx, yy, zz), a 3 x 3 matrix or named entries")
+    if any(not _alike(rows[i][j], rows[j][i], rows) for i in range(3) for j in range(i)):
+        raise ModelError(who, "the inertia matrix is not symmetric")
+    return (rows[0][0], rows[0][1], rows[0][2], rows[1][1], rows[1][2], rows[2][2])
+
+
+def _alike(a: Any, b: Any, rows: list[list[Any]]) -> bool:
+    """Equal, for numbers up to the rounding of a computed tensor."""
+    if is_number(a) and is_number(b):
+        largest = max((abs(x) for row in rows for x in row if is_number(x)), default=0)
+        return bool(abs(a - b) <= 1e-12 * largest)
+    return bool(a == b)
+
+
+def orientation(who: str, rpy: Vector | None, axis: Vector | None, angle: float) -> Matrix:
+    """Axes of a frame from roll-pitch-yaw about fixed x, y, z or from an axis and an angle (rad)."""
+    if rpy is not None:
+        return from_rpy(*rpy)
+    if axis is None:
+        return IDENTITY_MATRIX
+    return about(unit(axis, who), angle)
+
+
+def unit(axis: Sequence[Any], who: str) -> Vector:
+    """`axis` scaled to length 1; coordinate axes stay exact.
+
+    Raises:
+        ModelError: three zeros.
+    """
+    x, y, z = axis
+    if not all(is_number(c) for c in (x, y, z)):
+        return (x, y, z)
+    length = (x * x + y * y + z * z) ** 0.5
+    if length == 0:
+        raise ModelError(who, "the axis has length zero; give a direction such as (0, 0, 1)")
+    if length == 1:
+        return (x, y, z)
+    return (x / length, y / length, z / length)

@@ -1,0 +1,100 @@
+"""What every joint type answers; each type is one file beside this one.
+
+A joint is an oriented edge from a *tail* frame to a *head* frame, in translation and in rotation. Its
+across variables are the motion of the head relative to the tail; its coordinates q and velocities v are
+what it leaves free of it. All types answer the same questions in the same order:
+
+    positions   velocities   rest   alignment   motion   rates   regroup
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
+
+from linegraph.program import Quantity
+from linegraph.rotation import IDENTITY_MATRIX, Inertia, Rotation
+from linegraph.vector import ZERO, Matrix, Scalar, Vector
+
+if TYPE_CHECKING:
+    from linegraph.algebra import Algebra
+
+
+class Motion(NamedTuple):
+    """The relative motion a joint allows, head relative to tail.
+
+    With relative angular velocity w = sum_a angular[a] v_a and relative velocity of the head's origin
+    u = sum_a linear[a] v_a, both in head axes, their derivatives as seen in the head frame are
+    sum_a angular[a] v̇_a + angular_bias and sum_a linear[a] v̇_a + linear_bias.
+
+    Attributes:
+        rotation: head components to tail components.
+        displacement: origin of the head frame from that of the tail frame, in tail axes (m).
+        angular, linear: one 3-vector for each velocity coordinate, in head axes.
+        angular_bias, linear_bias: what remains of the derivatives with v̇ = 0, in head axes.
+    """
+
+    rotation: Rotation
+    displacement: Vector
+    angular: tuple[Vector, ...]
+    linear: tuple[Vector, ...]
+    angular_bias: Vector = ZERO
+    linear_bias: Vector = ZERO
+
+
+class Moments(NamedTuple):
+    """The mass distribution of a body: mass, first moment and inertia about an origin, in its axes."""
+
+    mass: Scalar
+    first: Vector
+    inertia: Inertia
+
+
+@dataclass(frozen=True)
+class Joint:
+    """Base of all joint types.
+
+    Attributes:
+        name: also the name of its edge and, with one freedom, of its coordinate.
+        between: the terminals (tail, head) as ``body`` or ``body.frame``.
+        axis: the direction it is about, along or normal to; unit length, in the joint's frames.
+        effort: whether a force or torque along each velocity coordinate is an input.
+    """
+
+    name: str
+    between: tuple[str, str]
+    axis: Vector = (0, 0, 1)
+    effort: bool = True
+
+    kind: ClassVar[str]
+    freedoms: ClassVar[int]
+
+    def positions(self) -> tuple[Quantity, ...]:
+        """The coordinates q: names, units, meaning."""
+        raise NotImplementedError
+
+    def velocities(self) -> tuple[Quantity, ...]:
+        """The velocity coordinates v."""
+        raise NotImplementedError
+
+    def rest(self) -> tuple[float, ...]:
+        """The q at which head and tail frames coincide."""
+        return (0.0,) * len(self.positions())
+
+    def alignment(self) -> Matrix:
+        """Rotation from joint axes, in which `motion` is written with the axis as z, to frame axes."""
+        return IDENTITY_MATRIX
+
+    def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
+        """The relative motion at (q, v), in aligned axes."""
+        raise NotImplementedError
+
+    def rates(
+        self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]
+    ) -> tuple[Scalar, ...]:
+        """``q̇ = N(q) v``."""
+        return v
+
+    def regroup(self, head: Moments) -> tuple[Moments, Moments]:
+        """Split the head body's moments into (kept, handed to the tail body) with the same M and h."""
+        return head, Moments(0, ZERO, (0, 0, 0, 0, 0, 0))

@@ -1,0 +1,48 @@
+"""The prismatic joint: one translation along an axis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from linegraph.joints.base import Joint, Moments, Motion
+from linegraph.program import Quantity
+from linegraph.rotation import Rotation, z_onto
+from linegraph.vector import ZERO, Matrix, Scalar
+
+if TYPE_CHECKING:
+    from linegraph.algebra import Algebra
+
+
+@dataclass(frozen=True)
+class Prismatic(Joint):
+    """A slider: the head moves along `axis` by q (m) without turning; v = q̇ (m/s).
+
+    Example:
+        >>> Prismatic("slide", ("ground", "cart"), axis=(1, 0, 0)).positions()[0].unit
+        'm'
+    """
+
+    kind = "prismatic"
+    freedoms = 1
+
+    def positions(self) -> tuple[Quantity, ...]:
+        """The displacement."""
+        return (Quantity(self.name, "m", f"displacement of prismatic joint {self.name}"),)
+
+    def velocities(self) -> tuple[Quantity, ...]:
+        """Its rate."""
+        return (Quantity(self.name, "m/s", f"rate of prismatic joint {self.name}"),)
+
+    def alignment(self) -> Matrix:
+        """z onto the axis."""
+        return z_onto(self.axis)
+
+    def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
+        """A shift along z."""
+        return Motion(Rotation(), (0, 0, q[0]), (ZERO,), ((0, 0, 1),))
+
+    def regroup(self, head: Moments) -> tuple[Moments, Moments]:
+        """Hand over the inertia tensor: head and tail turn alike."""
+        kept = Moments(head.mass, head.first, (0, 0, 0, 0, 0, 0))
+        return kept, Moments(0, ZERO, head.inertia)

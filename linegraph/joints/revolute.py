@@ -1,0 +1,55 @@
+"""The revolute joint: one rotation about an axis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from linegraph.joints.base import Joint, Moments, Motion
+from linegraph.program import Quantity
+from linegraph.rotation import Rotation, Turn, z_onto
+from linegraph.vector import ZERO, Matrix, Scalar
+
+if TYPE_CHECKING:
+    from linegraph.algebra import Algebra
+
+
+@dataclass(frozen=True)
+class Revolute(Joint):
+    """A hinge: the head turns about `axis` by the angle q (rad), right-handed; v = q̇ (rad/s).
+
+    Example:
+        >>> Revolute("elbow", ("arm.tip", "forearm"), axis=(0, 1, 0)).velocities()[0].unit
+        'rad/s'
+    """
+
+    kind = "revolute"
+    freedoms = 1
+
+    def positions(self) -> tuple[Quantity, ...]:
+        """The angle."""
+        return (Quantity(self.name, "rad", f"angle of revolute joint {self.name}"),)
+
+    def velocities(self) -> tuple[Quantity, ...]:
+        """Its rate."""
+        return (Quantity(self.name, "rad/s", f"rate of revolute joint {self.name}"),)
+
+    def alignment(self) -> Matrix:
+        """z onto the axis."""
+        return z_onto(self.axis)
+
+    def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
+        """A turn about z."""
+        turn = Turn(2, algebra.cos(q[0]), algebra.sin(q[0]))
+        return Motion(Rotation((turn,)), ZERO, ((0, 0, 1),), (ZERO,))
+
+    def regroup(self, head: Moments) -> tuple[Moments, Moments]:
+        """Hand over what is symmetric about the axis and has no inertia about it.
+
+        The mass as a point on the axis, the first moment along it and yy of diag(1, 1, 0) look the same
+        from the tail body at every angle (Khalil's base parameters).
+        """
+        x, y, z = head.first
+        xx, xy, xz, yy, yz, zz = head.inertia
+        kept = Moments(0, (x, y, 0), (xx - yy, xy, xz, 0, yz, zz))
+        return kept, Moments(head.mass, (0, 0, z), (yy, 0, 0, yy, 0, 0))

@@ -1,0 +1,333 @@
+"""Stage 3: the links of a mechanical tree, each in the frame in which its equations are shortest.
+
+A *link* is all bodies welded together beyond one moving joint. Its working frame has its origin at that
+joint and z along the joint's axis. Whatever is constant is folded here once: placements, alignments,
+rotated and shifted mass distributions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from linegraph import vector
+from linegraph.algebra import Algebra, Floats
+from linegraph.body import GROUND, Body, Placement
+from linegraph.domains import TRANSLATION
+from linegraph.errors import ModelError
+from linegraph.graph import SystemGraph
+from linegraph.joints import Joint, Moments
+from linegraph.model import Model
+from linegraph.parameters import is_number, resolver
+from linegraph.program import Quantity
+from linegraph.rotation import IDENTITY_MATRIX, Rotation, product, rotation_of, snapped
+from linegraph.topology import Step, Topology, choose_forest
+from linegraph.vector import ZERO, Scalar, Vector
+
+Resolve = Callable[[Any], Scalar]
+_NO_MOMENTS = Moments(0, ZERO, (0, 0, 0, 0, 0, 0))
+
+
+@dataclass(frozen=True)
+class Freedom:
+    """Where a joint's coordinate comes from: ``q_joint = ratio * (entry of the state) + offset``."""
+
+    index: int
+    ratio: Scalar = 1
+    offset: Scalar = 0
+
+
+@dataclass(frozen=True)
+class Link:
+    """A rigid body of the reduced tree.
+
+    Attributes:
+        name: the bodies welded into it.
+        parent: index of the link nearer to ground; -1 for ground.
+        joint: what connects it to its parent.
+        forward: whether the joint's edge points away from ground.
+        rotation, at: the joint's near frame in the parent's working frame; constant.
+        positions, velocities: where the joint's q and v stand in the state.
+        moments: mass distribution about the working origin, in working axes.
+    """
+
+    name: str
+    parent: int
+    joint: Joint
+    forward: bool
+    rotation: Rotation
+    at: Vector
+    positions: tuple[Freedom, ...]
+    velocities: tuple[Freedom, ...]
+    moments: Moments
+
+
+@dataclass(frozen=True)
+class KinematicTree:
+    """All links, every parent before its children, and what the state consists of."""
+
+    links: tuple[Link, ...]
+    gravity: Vector
+    positions: tuple[Quantity, ...]
+    velocities: tuple[Quantity, ...]
+    inputs: tuple[int, ...]
+
+    def regrouped(self) -> KinematicTree:
+        """The same M and h from fewer parameters: what a parent can carry is handed to it, leaf to root.
+
+        Exact for the equations of motion, not for joint reactions. Only numbers are moved: of symbols
+        the sums would be computed anew at every call.
+        """
+        moments = [link.moments for link in self.links]
+        for i in reversed(range(len(self.links))):
+            link = self.links[i]
+            if not _folded(moments[i]) or not all(is_number(x) for x in link.at):
+                continue
+            if link.parent >= 0 and not _folded(moments[link.parent]):
+                continue
+            moments[i], handed = link.joint.regroup(moments[i])
+            if link.parent >= 0:
+                shifted = carried(handed, link.rotation, link.at)
+                moments[link.parent] = joined(moments[link.parent], shifted)
+        links = (replace(link, moments=m) for link, m in zip(self.links, moments, strict=True))
+        return replace(self, links=tuple(links))
+
+
+def carried(moments: Moments, rotation: Rotation, at: Vector) -> Moments:
+    """Moments about an inner origin, resolved about an outer one and in outer axes.
+
+    With b the rotated first moment and m the mass, the inertia gains
+    2 (at . b) 1 - at b^T - b at^T + m (at . at 1 - at at^T).
+    """
+    m = moments.mass
+    b = rotation.out(moments.first)
+    xx, xy, xz, yy, yz, zz = rotation.congruence(moments.inertia)
+    first = vector.add(b, vector.scale(m, at))
+    # at . (b + first) collects both the first-moment and the mass term
+    c = vector.add(b, first)
+    px, py, pz = (at[k] * c[k] for k in range(3))
+    return Moments(
+        m,
+        first,
+        (
+            xx + (py + pz),
+            xy - (at[0] * b[1] + at[1] * first[0]),
+            xz - (at[0] * b[2] + at[2] * first[0]),
+            yy + (px + pz),
+            yz - (at[1] * b[2] + at[2] * first[1]),
+            zz + (px + py),
+        ),
+    )
+
+
+def joined(a: Moments, b: Moments) -> Moments:
+    """The moments of two bodies together, about one origin and in one frame."""
+    inertia = tuple(x + y for x, y in zip(a.inertia, b.inertia, strict=True))
+    return Moments(a.mass + b.mass, vector.add(a.first, b.first), inertia)  # type: ignore[arg-type]
+
+
+def body_moments(body: Body, resolve: Resolve) -> Moments:
+    """A body's mass distribution about its own frame's origin."""
+    mass = resolve(body.mass)
+    inertia = tuple(resolve(x) for x in body.inertia)
+    if body.first is not None:
+        return Moments(mass, _resolved(body.first, resolve), inertia)  # type: ignore[arg-type]
+    central = Moments(mass, ZERO, inertia)  # type: ignore[arg-type]
+    return carried(central, Rotation(), _resolved(body.center or ZERO, resolve))
+
+
+def compose(outer: Placement, inner: Placement, snap: float) -> Placement:
+    """A frame given in an inner frame, seen from the outer one."""
+    at = vector.add(outer.at, _swept(rotation_of(outer.rotation).out(inner.at), inner.at))
+    return Placement(at, snapped(product(outer.rotation, inner.rotation), snap))
+
+
+def inverse(placement: Placement) -> Placement:
+    """The outer frame seen from the inner one."""
+    back = vector.transpose(placement.rotation)
+    return Placement(vector.negate(rotation_of(back).out(placement.at)), back)
+
+
+def moved(near: Placement, joint: Joint, value: float, snap: float) -> Placement:
+    """The head frame of a one-freedom joint at a fixed value of its coordinate."""
+    alignment = Placement(ZERO, joint.alignment())
+    motion = joint.motion(Floats(), (value,), (0,))
+    turn = Placement(motion.displacement, snapped(motion.rotation.matrix(), snap))
+    there = compose(compose(near, alignment, snap), turn, snap)
+    return compose(there, inverse(alignment), snap)
+
+
+def mechanical_topology(model: Model, graph: SystemGraph) -> Topology:
+    """The tree of joint coordinates: arms and joints are branches, inertia edges chords.
+
+    Raises:
+        ModelError: a joint closes a loop, or a body hangs on nothing.
+    """
+    weights = {joint.name: float(joint.freedoms) for joint in model.joints}
+    weights |= {f"{name}/inertia": 7.0 for name in model.bodies}
+    projection = graph[TRANSLATION.name]
+    topology = choose_forest(projection, weights, roots=(GROUND,))
+    joints = {joint.name for joint in model.joints}
+    for edge in topology.chords:
+        if edge.name in joints:
+            raise ModelError(f'joint "{edge.name}"', "closes a loop; only trees can be derived")
+    for edge in topology.branches:
+        if edge.name.endswith("/inertia") and edge.name not in joints:
+            problem = "nothing connects it to ground; add a joint, a free one if it floats"
+            raise ModelError(f'body "{edge.component}"', problem)
+    return topology
+
+
+def kinematic_tree(
+    model: Model, topology: Topology, algebra: Algebra, parameters: Mapping[str, Scalar]
+) -> KinematicTree:
+    """Walk the tree from ground outward and fold all that is constant into links.
+
+    Raises:
+        ModelError: a coupling is impossible.
+    """
+    resolve = resolver(algebra, parameters)
+    state = _State(model, resolve)
+    return _Walk(model, state, resolve).along(topology.walk)
+
+
+class _State:
+    """The layout of q and v: which entries each joint reads, couplings included."""
+
+    def __init__(self, model: Model, resolve: Resolve) -> None:
+        self._model = model
+        self._resolve = resolve
+        self.positions: list[Quantity] = []
+        self.velocities: list[Quantity] = []
+        self.inputs: list[int] = []
+        self._places: dict[str, tuple[tuple[Freedom, ...], tuple[Freedom, ...]]] = {}
+        followers = {coupling.joint: coupling for coupling in model.couplings}
+        for joint in model.joints:
+            if joint.name not in followers:
+                self._add(joint)
+        for coupling in model.couplings:
+            self._couple(coupling.joint, followers)
+
+    def places(self, joint: Joint) -> tuple[tuple[Freedom, ...], tuple[Freedom, ...]]:
+        """Where the joint's q and v come from."""
+        return self._places[joint.name]
+
+    def _add(self, joint: Joint) -> None:
+        q, v = joint.positions(), joint.velocities()
+        first, start = len(self.positions), len(self.velocities)
+        self._places[joint.name] = (
+            tuple(Freedom(first + k) for k in range(len(q))),
+            tuple(Freedom(start + k) for k in range(len(v))),
+        )
+        self.positions += q
+        self.velocities += v
+        if joint.effort:
+            self.inputs += range(start, start + len(v))
+
+    def _couple(self, name: str, followers: Mapping[str, Any]) -> None:
+        """Follow the chain of masters to an independent joint and compose the ratios."""
+        who = f'joint "{name}"'
+        joints = {joint.name: joint for joint in self._model.joints}
+        ratio: Scalar = 1
+        offset: Scalar = 0
+        seen = {name}
+        follower = name
+        while follower in followers:
+            coupling = followers[follower]
+            for part in (follower, coupling.master):
+                if part not in joints or joints[part].freedoms != 1:
+                    raise ModelError(who, f'cannot follow: "{part}" is not a joint of one freedom')
+            # offset first: it is seen through the ratios gathered so far
+            offset = offset + ratio * self._resolve(coupling.offset)
+            ratio = ratio * self._resolve(coupling.ratio)
+            follower = coupling.master
+            if follower in seen:
+                raise ModelError(who, "follows itself through a circle of couplings")
+            seen.add(follower)
+        (q,), (v,) = self._places[follower]
+        self._places[name] = ((Freedom(q.index, ratio, offset),), (Freedom(v.index, ratio),))
+
+
+class _Walk:
+    """Collects links on a walk from ground outward."""
+
+    def __init__(self, model: Model, state: _State, resolve: Resolve) -> None:
+        self._model = model
+        self._state = state
+        self._resolve = resolve
+        self._joints = {joint.name: joint for joint in model.joints}
+        self._terminals = model.terminals()
+        self._links: list[Link] = []
+        self._where = {GROUND: (-1, Placement(ZERO, IDENTITY_MATRIX))}
+
+    def along(self, walk: tuple[Step, ...]) -> KinematicTree:
+        """Take every joint branch in turn; arms lie within a body and are constant."""
+        for step in walk:
+            joint = self._joints.get(step.edge.name)
+            if joint is not None and step.edge.component == joint.name:
+                self._cross(joint, step)
+        state = self._state
+        return KinematicTree(
+            tuple(self._links),
+            _resolved(self._model.gravity, self._resolve),
+            tuple(state.positions),
+            tuple(state.velocities),
+            tuple(sorted(state.inputs)),
+        )
+
+    def _cross(self, joint: Joint, step: Step) -> None:
+        body, placement = self._terminals[step.near]
+        parent, pose = self._where[body]
+        near = self._compose(pose, self._constant(placement))
+        body, placement = self._terminals[step.far]
+        far = self._constant(placement)
+        if joint.freedoms == 0:
+            self._enter(body, parent, self._compose(near, inverse(far)))
+            return
+        alignment = Placement(ZERO, joint.alignment())
+        near = self._compose(near, alignment)
+        positions, velocities = self._state.places(joint)
+        link = Link(
+            "", parent, joint, step.forward, rotation_of(near.rotation), near.at,
+            positions, velocities, _NO_MOMENTS,
+        )  # fmt: skip
+        self._links.append(link)
+        self._enter(body, len(self._links) - 1, inverse(self._compose(far, alignment)))
+
+    def _enter(self, body: str, index: int, pose: Placement) -> None:
+        """Note where a body is and add its mass distribution to its link."""
+        self._where[body] = (index, pose)
+        if index < 0:
+            return
+        link = self._links[index]
+        own = body_moments(self._model.bodies[body], self._resolve)
+        moments = joined(link.moments, carried(own, rotation_of(pose.rotation), pose.at))
+        name = f"{link.name}, {body}" if link.name else body
+        self._links[index] = replace(link, name=name, moments=moments)
+
+    def _constant(self, placement: Placement) -> Placement:
+        rows = (_resolved(row, self._resolve) for row in placement.rotation)
+        return Placement(_resolved(placement.at, self._resolve), tuple(rows))  # type: ignore[arg-type]
+
+    def _compose(self, outer: Placement, inner: Placement) -> Placement:
+        return compose(outer, inner, self._model.snap)
+
+
+def _swept(turned: Vector, original: Vector) -> Vector:
+    """Drop rounding dust that a constant rotation leaves where an exact zero belongs."""
+    if not all(isinstance(x, (int, float)) for x in (*turned, *original)):
+        return turned
+    scale = max(abs(x) for x in original)
+    swept = tuple(0 if abs(x) <= 4e-16 * scale else x for x in turned)
+    return swept  # type: ignore[return-value]
+
+
+def _resolved(a: Vector, resolve: Resolve) -> Vector:
+    return (resolve(a[0]), resolve(a[1]), resolve(a[2]))
+
+
+def _folded(moments: Moments) -> bool:
+    """Whether the moments are numbers."""
+    scalars = (moments.mass, *moments.first, *moments.inertia)
+    return all(isinstance(x, (int, float)) for x in scalars)

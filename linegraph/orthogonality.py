@@ -1,0 +1,335 @@
+"""Stage 4: the equations of motion of a tree, from the principle of orthogonality.
+
+Summed over all edges of all subspaces, through times across is zero, and stays so when the across
+variables are varied. With the cutset equations the sum becomes d'Alembert's principle; with the circuit
+and connecting equations all variations become those of the joint coordinates, and their coefficients are
+
+    M(q) v̇ + h(q, v) = Q
+
+In the paper's matrices (Boiadzhiev & Lilov 1993, (12)-(15)), with H = P^-1 and Λ = S x (H C) + K,
+
+    M = (S H) I (S H)^T + Λ (H m H^T) Λ^T
+
+Here H is applied, never multiplied out: H^T sums from the root to the leaves (circuit equations: motion),
+H from the leaves to the root (cutset equations: forces). Each link's vectors are resolved in its own
+working frame, its mass distribution taken about its joint.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from linegraph import vector
+from linegraph.algebra import Algebra
+from linegraph.joints import Moments, Motion
+from linegraph.kinematics import Freedom, KinematicTree, Link, carried, joined
+from linegraph.rotation import Inertia, Rotation
+from linegraph.vector import ZERO, Scalar, Vector, add, cross, dot
+
+Rows = list[list[Scalar]]
+
+
+class Arm(NamedTuple):
+    """A link's joint at a state, as the walk crosses it: near side to far side.
+
+    Attributes:
+        rotation: the link's working components to its parent's.
+        at: the link's origin in its parent's working frame.
+        motion: the joint's motion, turned round where its edge points to ground.
+        rates: the joint's velocity coordinates.
+    """
+
+    rotation: Rotation
+    at: Vector
+    motion: Motion
+    rates: tuple[Scalar, ...]
+
+
+class Spin(NamedTuple):
+    """How a link moves: angular velocity and acceleration, and the acceleration of its origin."""
+
+    velocity: Vector
+    angular: Vector
+    linear: Vector
+
+
+def arms(
+    tree: KinematicTree, algebra: Algebra, q: Iterable[Scalar], v: Iterable[Scalar]
+) -> list[Arm]:
+    """Every joint's motion at (q, v)."""
+    q, v = tuple(q), tuple(v)
+    found = []
+    for link in tree.links:
+        _label(algebra, f"joint {link.joint.name}")
+        positions = tuple(_coordinate(f, q) for f in link.positions)
+        rates = tuple(f.ratio * v[f.index] for f in link.velocities)
+        motion = link.joint.motion(algebra, positions, rates)
+        if not link.forward:
+            motion = reverse(motion)
+        rotation = link.rotation @ motion.rotation
+        at = add(link.at, link.rotation.out(motion.displacement))
+        found.append(Arm(rotation, at, motion, rates))
+    return found
+
+
+def reverse(motion: Motion) -> Motion:
+    """The motion of the tail as seen from the head: the joint crossed against its orientation."""
+    r = motion.rotation
+    at = vector.negate(r.into(motion.displacement))
+
+    def moment(s: Vector, u: Vector) -> Vector:
+        return r.out(vector.negate(add(cross(s, at), u)))
+
+    return Motion(
+        r.inverse(),
+        at,
+        tuple(r.out(vector.negate(s)) for s in motion.angular),
+        tuple(moment(s, u) for s, u in zip(motion.angular, motion.linear, strict=True)),
+        r.out(vector.negate(motion.angular_bias)),
+        moment(motion.angular_bias, motion.linear_bias),
+    )
+
+
+def mass_matrix(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> Rows:
+    """M(q), n x n: (13) and (15) of the paper with H applied.
+
+    The composite of a link is what H gathers: all mass carried by its joint. Its inertia force for a unit
+    acceleration of one coordinate, gathered on towards the root and projected on every joint it passes,
+    is one column of M.
+    """
+    size = len(tree.velocities)
+    rows: Rows = [[0] * size for _ in range(size)]
+    composites = _composites(tree, algebra, crossed)
+    for i, link in enumerate(tree.links):
+        _label(algebra, f"mass matrix, {_who(link)}")
+        motion = crossed[i].motion
+        for a, freedom in enumerate(link.velocities):
+            force, torque = _inertia_force(composites[i], motion.angular[a], motion.linear[a])
+            for b in range(a + 1):
+                entry = _projection(motion, b, force, torque)
+                _contribute(rows, freedom, link.velocities[b], entry, once=a == b)
+            j = i
+            while (parent := tree.links[j].parent) >= 0:
+                force, torque = _gathered(crossed[j], force, torque)
+                j = parent
+                for b, other in enumerate(tree.links[j].velocities):
+                    entry = _projection(crossed[j].motion, b, force, torque)
+                    _contribute(rows, freedom, other, entry, once=False)
+    return rows
+
+
+def inverse_dynamics(
+    tree: KinematicTree,
+    algebra: Algebra,
+    crossed: list[Arm],
+    acceleration: Iterable[Scalar] | None = None,
+) -> list[Scalar]:
+    """``M v̇ + h`` for given v̇, without M; with no v̇ the bias h itself: (14) of the paper.
+
+    Motion runs from the root to the leaves (H^T), d'Alembert's forces and torques back (H).
+    """
+    spins = _spins(tree, algebra, crossed, acceleration)
+    forces = [_d_alembert(link.moments, spin, algebra, link) for link, spin in zip(tree.links, spins, strict=True)]
+    total: list[Scalar] = [0] * len(tree.velocities)
+    for i in reversed(range(len(tree.links))):
+        link = tree.links[i]
+        _label(algebra, f"forces, {_who(link)}")
+        force, torque = forces[i]
+        for a, freedom in enumerate(link.velocities):
+            entry = _projection(crossed[i].motion, a, force, torque)
+            total[freedom.index] = total[freedom.index] + freedom.ratio * entry
+        if link.parent >= 0:
+            force, torque = _gathered(crossed[i], force, torque)
+            outer = forces[link.parent]
+            forces[link.parent] = (add(outer[0], force), add(outer[1], torque))
+    return total
+
+
+def energy(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> tuple[Scalar, Scalar]:
+    """Kinetic and potential energy (J); the latter is zero with all mass at the origin of ground."""
+    kinetic: Scalar = 0
+    velocities: list[tuple[Vector, Vector]] = []
+    for link, arm in zip(tree.links, crossed, strict=True):
+        _label(algebra, f"kinetic energy, {_who(link)}")
+        angular, linear = velocities[link.parent] if link.parent >= 0 else (ZERO, ZERO)
+        linear = arm.rotation.into(add(linear, cross(angular, arm.at)))
+        linear = add(linear, vector.combine(arm.rates, arm.motion.linear))
+        angular = add(arm.rotation.into(angular), vector.combine(arm.rates, arm.motion.angular))
+        velocities.append((angular, linear))
+        mass, first, inertia = link.moments
+        momentum = add(vector.scale(mass, linear), cross(angular, first))
+        spin = add(_apply(inertia, angular), cross(first, linear))
+        kinetic = kinetic + (dot(linear, momentum) + dot(angular, spin))
+    return 0.5 * kinetic, _potential(tree, algebra, crossed)
+
+
+def coordinate_rates(
+    tree: KinematicTree, algebra: Algebra, q: Iterable[Scalar], v: Iterable[Scalar]
+) -> list[Scalar]:
+    """``q̇ = N(q) v``."""
+    q, v = tuple(q), tuple(v)
+    rates: list[Scalar] = [0] * len(tree.positions)
+    for link in tree.links:
+        if any(f.ratio != 1 or f.offset != 0 for f in link.positions):
+            continue
+        own = link.joint.rates(
+            algebra, tuple(q[f.index] for f in link.positions), tuple(v[f.index] for f in link.velocities)
+        )
+        for freedom, rate in zip(link.positions, own, strict=True):
+            rates[freedom.index] = rate
+    return rates
+
+
+def _spins(
+    tree: KinematicTree,
+    algebra: Algebra,
+    crossed: list[Arm],
+    acceleration: Iterable[Scalar] | None,
+) -> list[Spin]:
+    """Circuit equations of velocity and acceleration: H^T, from the root to the leaves.
+
+    Gravity enters as the acceleration -g of ground.
+    """
+    a = None if acceleration is None else tuple(acceleration)
+    ground = Spin(ZERO, ZERO, vector.negate(tree.gravity))
+    spins: list[Spin] = []
+    for link, arm in zip(tree.links, crossed, strict=True):
+        _label(algebra, f"motion, {_who(link)}")
+        near = spins[link.parent] if link.parent >= 0 else ground
+        motion = arm.motion
+        w = vector.combine(arm.rates, motion.angular)
+        u = vector.combine(arm.rates, motion.linear)
+        carried_w = arm.rotation.into(near.velocity)
+        velocity = add(carried_w, w)
+        angular = add(arm.rotation.into(near.angular), cross(carried_w, w))
+        angular = add(angular, motion.angular_bias)
+        # Coriolis: the relative velocity u turns with the near link (twice) and with the joint
+        linear = arm.rotation.into(add(near.linear, _accelerated(near, arm.at)))
+        linear = add(linear, cross(add(velocity, carried_w), u))
+        linear = add(linear, motion.linear_bias)
+        if a is not None:
+            own = tuple(f.ratio * a[f.index] for f in link.velocities)
+            angular = add(angular, vector.combine(own, motion.angular))
+            linear = add(linear, vector.combine(own, motion.linear))
+        spins.append(Spin(velocity, angular, linear))
+    return spins
+
+
+def _products(w: Vector) -> Inertia:
+    """ω ω^T: computed once, since the DAG shares it between all uses."""
+    x, y, z = w
+    return (x * x, x * y, x * z, y * y, y * z, z * z)
+
+
+def _accelerated(spin: Spin, r: Vector) -> Vector:
+    """``U r`` with U = [ε x] + [ω x][ω x]: acceleration of a point r of a link, less its origin's."""
+    xx, xy, xz, yy, yz, zz = _products(spin.velocity)
+    x, y, z = spin.angular
+    return (
+        (xy - z) * r[1] + (xz + y) * r[2] - (yy + zz) * r[0],
+        (xy + z) * r[0] + (yz - x) * r[2] - (xx + zz) * r[1],
+        (xz - y) * r[0] + (yz + x) * r[1] - (xx + yy) * r[2],
+    )
+
+
+def _d_alembert(
+    moments: Moments, spin: Spin, algebra: Algebra, link: Link
+) -> tuple[Vector, Vector]:
+    """Force and torque that the motion of a link asks for, about its origin.
+
+    f = m a + U b and n = I ε + ω x I ω + b x a, with b the first moment; the torque's rotational part is
+    written with the entries of U, which the force and the arms need anyway.
+    """
+    _label(algebra, f"forces, {_who(link)}")
+    mass, first, inertia = moments
+    force = add(vector.scale(mass, spin.linear), _accelerated(spin, first))
+    xx, xy, xz, yy, yz, zz = _products(spin.velocity)
+    x, y, z = spin.angular
+    jxx, jxy, jxz, jyy, jyz, jzz = inertia
+    torque = (
+        jxx * x + (jzz - jyy) * yz + jxy * (y - xz) + jxz * (z + xy) + jyz * (yy - zz),
+        jyy * y + (jxx - jzz) * xz + jyz * (z - xy) + jxy * (x + yz) + jxz * (zz - xx),
+        jzz * z + (jyy - jxx) * xy + jxz * (x - yz) + jyz * (y + xz) + jxy * (xx - yy),
+    )
+    return force, add(torque, cross(first, spin.linear))
+
+
+def _composites(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> list[Moments]:
+    """What each joint carries: moments gathered from the leaves to the root (H m H^T and its kin)."""
+    composites = [link.moments for link in tree.links]
+    for i in reversed(range(len(tree.links))):
+        link = tree.links[i]
+        if link.parent >= 0:
+            _label(algebra, f"carried by {_who(link)}")
+            seen = carried(composites[i], crossed[i].rotation, crossed[i].at)
+            composites[link.parent] = joined(composites[link.parent], seen)
+    return composites
+
+
+def _potential(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> Scalar:
+    """``-g . (sum of m r)``: first moments gathered from the leaves to the root."""
+    gathered = [(link.moments.mass, link.moments.first) for link in tree.links]
+    total: Vector = ZERO
+    for i in reversed(range(len(tree.links))):
+        link, arm = tree.links[i], crossed[i]
+        _label(algebra, f"potential energy, {_who(link)}")
+        mass, first = gathered[i]
+        first = add(arm.rotation.out(first), vector.scale(mass, arm.at))
+        if link.parent < 0:
+            total = add(total, first)
+        else:
+            outer = gathered[link.parent]
+            gathered[link.parent] = (outer[0] + mass, add(outer[1], first))
+    return -dot(tree.gravity, total)
+
+
+def _inertia_force(composite: Moments, angular: Vector, linear: Vector) -> tuple[Vector, Vector]:
+    """Force and torque about the origin for accelerations (angular, linear) of a composite at rest."""
+    mass, first, inertia = composite
+    force = add(vector.scale(mass, linear), cross(angular, first))
+    torque = add(_apply(inertia, angular), cross(first, linear))
+    return force, torque
+
+
+def _gathered(arm: Arm, force: Vector, torque: Vector) -> tuple[Vector, Vector]:
+    """Cutset equation with its connecting term: carry a force and a torque across an arm inward."""
+    force = arm.rotation.out(force)
+    return force, add(arm.rotation.out(torque), cross(arm.at, force))
+
+
+def _projection(motion: Motion, a: int, force: Vector, torque: Vector) -> Scalar:
+    """Through variables projected on one freedom of a joint: s . n + κ . f."""
+    return dot(motion.angular[a], torque) + dot(motion.linear[a], force)
+
+
+def _contribute(rows: Rows, a: Freedom, b: Freedom, entry: Scalar, *, once: bool) -> None:
+    """Add one product of freedoms to M, on both sides of the diagonal; coupled ones may meet on it."""
+    value = (a.ratio * b.ratio) * entry
+    rows[a.index][b.index] = rows[a.index][b.index] + value
+    if not once:
+        rows[b.index][a.index] = rows[b.index][a.index] + value
+
+
+def _apply(j: Inertia, a: Vector) -> Vector:
+    """A symmetric tensor times a vector."""
+    xx, xy, xz, yy, yz, zz = j
+    return (
+        xx * a[0] + xy * a[1] + xz * a[2],
+        xy * a[0] + yy * a[1] + yz * a[2],
+        xz * a[0] + yz * a[1] + zz * a[2],
+    )
+
+
+def _coordinate(freedom: Freedom, q: tuple[Scalar, ...]) -> Scalar:
+    return freedom.ratio * q[freedom.index] + freedom.offset
+
+
+def _who(link: Link) -> str:
+    return f"{link.joint.name} -> {link.name}"
+
+
+def _label(algebra: Algebra, text: str) -> None:
+    """Tell a DAG which part the next nodes belong to."""
+    if hasattr(algebra, "label"):
+        algebra.label = text

@@ -1,0 +1,108 @@
+"""Whether a mass matrix can be inverted: every coordinate must move some inertia."""
+
+from __future__ import annotations
+
+import random
+from typing import TYPE_CHECKING
+
+from linegraph.algebra import Floats
+from linegraph.errors import ModelError
+from linegraph.kinematics import KinematicTree, Link, kinematic_tree
+from linegraph.orthogonality import arms, mass_matrix
+from linegraph.parameters import is_number
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from linegraph.model import Model
+    from linegraph.topology import Topology
+
+SINGULAR = 1e-13
+"""A pivot of M below this fraction of its diagonal entry is zero up to rounding."""
+
+
+def require_regular(model: Model, topology: Topology) -> None:
+    """Refuse a model one of whose coordinates moves no inertia.
+
+    Bodies with mass and inertia in every direction make M regular by themselves; only where some body
+    lacks them is M factored, at two random states, so that no special position decides.
+
+    Raises:
+        ModelError: names the joint.
+    """
+    tree = kinematic_tree(model, topology, Floats(), _sample_values(model))
+    if not tree.links:
+        raise ModelError(f'model "{model.name}"', "no joint can move: there is nothing to derive")
+    if all(_is_solid(link) for link in tree.links):
+        return
+    failures = [_first_dependent(tree, seed) for seed in (1, 2)]
+    if all(failure is not None for failure in failures):
+        link = _link_of(tree, failures[-1] or 0)
+        problem = (
+            f"moves no inertia of its own ({link.name}): the mass matrix is singular. Give the bodies it "
+            "carries mass and inertia, or lock or fix the joint"
+        )
+        raise ModelError(f'joint "{link.joint.name}"', problem)
+
+
+def _sample_values(model: Model) -> Mapping[str, float]:
+    """Each parameter's value, or some positive number where it has none."""
+    draw = random.Random(0)
+    return {
+        p.name: p.value if p.value is not None else draw.uniform(0.5, 2.0)
+        for p in model.parameters.values()
+    }
+
+
+def _is_solid(link: Link) -> bool:
+    """Whether the mass and the central inertia are positive, with a margin for rounding."""
+    m, (x, y, z), (xx, xy, xz, yy, yz, zz) = link.moments
+    if not all(is_number(value) for value in (m, x, y, z)) or m <= 0:
+        return False
+    cx, cy, cz = x / m, y / m, z / m
+    a = xx - m * (cy * cy + cz * cz)
+    b = yy - m * (cx * cx + cz * cz)
+    c = zz - m * (cx * cx + cy * cy)
+    d, e, f = xy + m * cx * cy, xz + m * cx * cz, yz + m * cy * cz
+    least = 1e-9 * max(xx, yy, zz)
+    minor = a * b - d * d
+    volume = c * minor - a * f * f - b * e * e + 2 * d * e * f
+    return bool(a > least and minor > least * a and volume > least * minor)
+
+
+def _first_dependent(tree: KinematicTree, seed: int) -> int | None:
+    """The coordinate at which the factorisation of M from the leaves fails, or None."""
+    draw = random.Random(seed)
+    q = [draw.uniform(-1, 1) for _ in tree.positions]
+    for link in tree.links:
+        if len(link.positions) > len(link.velocities):
+            _normalise(q, [f.index for f in link.positions][-4:])
+    zero = [0.0] * len(tree.velocities)
+    return _failing_pivot(mass_matrix(tree, Floats(), arms(tree, Floats(), q, zero)))
+
+
+def _normalise(q: list[float], places: Sequence[int]) -> None:
+    length = sum(q[i] ** 2 for i in places) ** 0.5
+    for i in places:
+        q[i] /= length
+
+
+def _failing_pivot(m: list[list[float]]) -> int | None:
+    """M = L^T D L from the last coordinate to the first: the first pivot that is not positive."""
+    m = [list(row) for row in m]
+    scale = [m[i][i] for i in range(len(m))]
+    for k in reversed(range(len(m))):
+        if not m[k][k] > SINGULAR * abs(scale[k]):
+            return k
+        for i in range(k):
+            factor = m[k][i] / m[k][k]
+            for j in range(i + 1):
+                m[i][j] -= factor * m[k][j]
+    return None
+
+
+def _link_of(tree: KinematicTree, index: int) -> Link:
+    for link in tree.links:
+        if any(freedom.index == index for freedom in link.velocities):
+            return link
+    raise AssertionError("every velocity belongs to a joint")
