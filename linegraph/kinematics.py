@@ -19,7 +19,7 @@ from linegraph.errors import ModelError
 from linegraph.graph import SystemGraph
 from linegraph.joints import Joint, Moments
 from linegraph.model import Model
-from linegraph.parameters import is_number, resolver
+from linegraph.parameters import resolver
 from linegraph.program import Quantity
 from linegraph.rotation import IDENTITY_MATRIX, Rotation, product, rotation_of, snapped
 from linegraph.topology import Step, Topology, choose_forest
@@ -62,6 +62,12 @@ class Link:
     velocities: tuple[Freedom, ...]
     moments: Moments
 
+    @property
+    def numeric(self) -> bool:
+        """Whether the mass distribution is made of numbers."""
+        scalars = (self.moments.mass, *self.moments.first, *self.moments.inertia)
+        return all(isinstance(x, (int, float)) for x in scalars)
+
 
 @dataclass(frozen=True)
 class KinematicTree:
@@ -73,24 +79,30 @@ class KinematicTree:
     velocities: tuple[Quantity, ...]
     inputs: tuple[int, ...]
 
+    @property
+    def coupled(self) -> bool:
+        """Whether two joints share a coordinate."""
+        places = [freedom.index for link in self.links for freedom in link.velocities]
+        return len(places) > len(set(places))
+
     def regrouped(self) -> KinematicTree:
         """The same M and h from fewer parameters: what a parent can carry is handed to it, leaf to root.
 
         Exact for the equations of motion, not for joint reactions. Only numbers are moved: of symbols
         the sums would be computed anew at every call.
         """
-        moments = [link.moments for link in self.links]
-        for i in reversed(range(len(self.links))):
-            link = self.links[i]
-            if not _folded(moments[i]) or not all(is_number(x) for x in link.at):
+        links = list(self.links)
+        for i in reversed(range(len(links))):
+            link = links[i]
+            parent = links[link.parent] if link.parent >= 0 else None
+            fixed = all(isinstance(x, (int, float)) for x in link.at)
+            if not (fixed and link.numeric and (parent is None or parent.numeric)):
                 continue
-            if link.parent >= 0 and not _folded(moments[link.parent]):
-                continue
-            moments[i], handed = link.joint.regroup(moments[i])
-            if link.parent >= 0:
+            kept, handed = link.joint.regroup(link.moments)
+            links[i] = replace(link, moments=kept)
+            if parent is not None:
                 shifted = carried(handed, link.rotation, link.at)
-                moments[link.parent] = joined(moments[link.parent], shifted)
-        links = (replace(link, moments=m) for link, m in zip(self.links, moments, strict=True))
+                links[link.parent] = replace(parent, moments=joined(parent.moments, shifted))
         return replace(self, links=tuple(links))
 
 
@@ -326,8 +338,3 @@ def _swept(turned: Vector, original: Vector) -> Vector:
 def _resolved(a: Vector, resolve: Resolve) -> Vector:
     return (resolve(a[0]), resolve(a[1]), resolve(a[2]))
 
-
-def _folded(moments: Moments) -> bool:
-    """Whether the moments are numbers."""
-    scalars = (moments.mass, *moments.first, *moments.inertia)
-    return all(isinstance(x, (int, float)) for x in scalars)

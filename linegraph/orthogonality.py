@@ -61,7 +61,7 @@ def arms(
     q, v = tuple(q), tuple(v)
     found = []
     for link in tree.links:
-        _label(algebra, f"joint {link.joint.name}")
+        set_label(algebra, f"joint {link.joint.name}")
         positions = tuple(_coordinate(f, q) for f in link.positions)
         rates = tuple(f.ratio * v[f.index] for f in link.velocities)
         motion = link.joint.motion(algebra, positions, rates)
@@ -102,7 +102,7 @@ def mass_matrix(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> Ro
     rows: Rows = [[0] * size for _ in range(size)]
     composites = _composites(tree, algebra, crossed)
     for i, link in enumerate(tree.links):
-        _label(algebra, f"mass matrix, {_who(link)}")
+        set_label(algebra, f"mass matrix, {caption(link)}")
         motion = crossed[i].motion
         for a, freedom in enumerate(link.velocities):
             force, torque = _inertia_force(composites[i], motion.angular[a], motion.linear[a])
@@ -134,7 +134,7 @@ def inverse_dynamics(
     total: list[Scalar] = [0] * len(tree.velocities)
     for i in reversed(range(len(tree.links))):
         link = tree.links[i]
-        _label(algebra, f"forces, {_who(link)}")
+        set_label(algebra, f"forces, {caption(link)}")
         force, torque = forces[i]
         for a, freedom in enumerate(link.velocities):
             entry = _projection(crossed[i].motion, a, force, torque)
@@ -151,7 +151,7 @@ def energy(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> tuple[S
     kinetic: Scalar = 0
     velocities: list[tuple[Vector, Vector]] = []
     for link, arm in zip(tree.links, crossed, strict=True):
-        _label(algebra, f"kinetic energy, {_who(link)}")
+        set_label(algebra, f"kinetic energy, {caption(link)}")
         angular, linear = velocities[link.parent] if link.parent >= 0 else (ZERO, ZERO)
         linear = arm.rotation.into(add(linear, cross(angular, arm.at)))
         linear = add(linear, vector.combine(arm.rates, arm.motion.linear))
@@ -195,25 +195,63 @@ def _spins(
     ground = Spin(ZERO, ZERO, vector.negate(tree.gravity))
     spins: list[Spin] = []
     for link, arm in zip(tree.links, crossed, strict=True):
-        _label(algebra, f"motion, {_who(link)}")
+        set_label(algebra, f"motion, {caption(link)}")
         near = spins[link.parent] if link.parent >= 0 else ground
-        motion = arm.motion
-        w = vector.combine(arm.rates, motion.angular)
-        u = vector.combine(arm.rates, motion.linear)
-        carried_w = arm.rotation.into(near.velocity)
-        velocity = add(carried_w, w)
-        angular = add(arm.rotation.into(near.angular), cross(carried_w, w))
-        angular = add(angular, motion.angular_bias)
-        # Coriolis: the relative velocity u turns with the near link (twice) and with the joint
-        linear = arm.rotation.into(add(near.linear, _accelerated(near, arm.at)))
-        linear = add(linear, cross(add(velocity, carried_w), u))
-        linear = add(linear, motion.linear_bias)
+        velocity, angular, linear = _relative(arm, near.velocity)
+        angular = add(arm.rotation.into(near.angular), angular)
+        linear = add(arm.rotation.into(add(near.linear, _accelerated(near, arm.at))), linear)
         if a is not None:
             own = tuple(f.ratio * a[f.index] for f in link.velocities)
-            angular = add(angular, vector.combine(own, motion.angular))
-            linear = add(linear, vector.combine(own, motion.linear))
+            angular = add(angular, vector.combine(own, arm.motion.angular))
+            linear = add(linear, vector.combine(own, arm.motion.linear))
         spins.append(Spin(velocity, angular, linear))
     return spins
+
+
+def _relative(arm: Arm, near: Vector) -> tuple[Vector, Vector, Vector]:
+    """What a joint makes of its near link's angular velocity, with v̇ = 0 and in the far link's axes.
+
+    Returns:
+        The far link's angular velocity and the joint's share of its angular and linear acceleration.
+    """
+    motion = arm.motion
+    w = vector.combine(arm.rates, motion.angular)
+    u = vector.combine(arm.rates, motion.linear)
+    carried_w = arm.rotation.into(near)
+    velocity = add(carried_w, w)
+    angular = add(cross(carried_w, w), motion.angular_bias)
+    # Coriolis: the relative velocity u turns with the near link (twice) and with the joint
+    linear = add(cross(add(velocity, carried_w), u), motion.linear_bias)
+    return velocity, angular, linear
+
+
+def bias_accelerations(
+    tree: KinematicTree, algebra: Algebra, crossed: list[Arm]
+) -> tuple[list[Vector], list[tuple[Vector, Vector]]]:
+    """Angular velocity of each link, and what each joint adds to the acceleration that reaches it.
+
+    The second is (angular, linear) with v̇ = 0, in the far link's axes; at ground it contains -g.
+    """
+    velocities: list[Vector] = []
+    extra: list[tuple[Vector, Vector]] = []
+    for link, arm in zip(tree.links, crossed, strict=True):
+        set_label(algebra, f"motion, {caption(link)}")
+        near = velocities[link.parent] if link.parent >= 0 else ZERO
+        velocity, angular, linear = _relative(arm, near)
+        turning = Spin(near, ZERO, ZERO)
+        pull = _accelerated(turning, arm.at)
+        if link.parent < 0:
+            pull = vector.subtract(pull, tree.gravity)
+        velocities.append(velocity)
+        extra.append((angular, add(arm.rotation.into(pull), linear)))
+    return velocities, extra
+
+
+def bias_force(moments: Moments, velocity: Vector) -> tuple[Vector, Vector]:
+    """Torque and force, about a link's origin, that its turning asks for at zero acceleration."""
+    _, first, inertia = moments
+    torque = cross(velocity, _apply(inertia, velocity))
+    return torque, _accelerated(Spin(velocity, ZERO, ZERO), first)
 
 
 def _products(w: Vector) -> Inertia:
@@ -241,7 +279,7 @@ def _d_alembert(
     f = m a + U b and n = I ε + ω x I ω + b x a, with b the first moment; the torque's rotational part is
     written with the entries of U, which the force and the arms need anyway.
     """
-    _label(algebra, f"forces, {_who(link)}")
+    set_label(algebra, f"forces, {caption(link)}")
     mass, first, inertia = moments
     force = add(vector.scale(mass, spin.linear), _accelerated(spin, first))
     xx, xy, xz, yy, yz, zz = _products(spin.velocity)
@@ -261,7 +299,7 @@ def _composites(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> li
     for i in reversed(range(len(tree.links))):
         link = tree.links[i]
         if link.parent >= 0:
-            _label(algebra, f"carried by {_who(link)}")
+            set_label(algebra, f"carried by {caption(link)}")
             seen = carried(composites[i], crossed[i].rotation, crossed[i].at)
             composites[link.parent] = joined(composites[link.parent], seen)
     return composites
@@ -273,7 +311,7 @@ def _potential(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> Sca
     total: Vector = ZERO
     for i in reversed(range(len(tree.links))):
         link, arm = tree.links[i], crossed[i]
-        _label(algebra, f"potential energy, {_who(link)}")
+        set_label(algebra, f"potential energy, {caption(link)}")
         mass, first = gathered[i]
         first = add(arm.rotation.out(first), vector.scale(mass, arm.at))
         if link.parent < 0:
@@ -325,11 +363,11 @@ def _coordinate(freedom: Freedom, q: tuple[Scalar, ...]) -> Scalar:
     return freedom.ratio * q[freedom.index] + freedom.offset
 
 
-def _who(link: Link) -> str:
+def caption(link: Link) -> str:
     return f"{link.joint.name} -> {link.name}"
 
 
-def _label(algebra: Algebra, text: str) -> None:
+def set_label(algebra: Algebra, text: str) -> None:
     """Tell a DAG which part the next nodes belong to."""
     if hasattr(algebra, "label"):
         algebra.label = text

@@ -9,7 +9,6 @@ from linegraph.algebra import Floats
 from linegraph.errors import ModelError
 from linegraph.kinematics import KinematicTree, Link, kinematic_tree
 from linegraph.orthogonality import arms, mass_matrix
-from linegraph.parameters import is_number
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -33,7 +32,7 @@ def require_regular(model: Model, topology: Topology) -> None:
     tree = kinematic_tree(model, topology, Floats(), _sample_values(model))
     if not tree.links:
         raise ModelError(f'model "{model.name}"', "no joint can move: there is nothing to derive")
-    if all(_is_solid(link) for link in tree.links):
+    if all(is_solid(link) for link in tree.links):
         return
     failures = [_first_dependent(tree, seed) for seed in (1, 2)]
     if all(failure is not None for failure in failures):
@@ -54,10 +53,10 @@ def _sample_values(model: Model) -> Mapping[str, float]:
     }
 
 
-def _is_solid(link: Link) -> bool:
+def is_solid(link: Link) -> bool:
     """Whether the mass and the central inertia are positive, with a margin for rounding."""
     m, (x, y, z), (xx, xy, xz, yy, yz, zz) = link.moments
-    if not all(is_number(value) for value in (m, x, y, z)) or m <= 0:
+    if m <= 0:
         return False
     cx, cy, cz = x / m, y / m, z / m
     a = xx - m * (cy * cy + cz * cz)
