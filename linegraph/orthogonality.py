@@ -161,7 +161,7 @@ def energy(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> tuple[S
         momentum = add(vector.scale(mass, linear), cross(angular, first))
         spin = add(_apply(inertia, angular), cross(first, linear))
         kinetic = kinetic + (dot(linear, momentum) + dot(angular, spin))
-    return 0.5 * kinetic, _potential(tree, algebra, crossed)
+    return kinetic / 2, _potential(tree, algebra, crossed)
 
 
 def coordinate_rates(

@@ -69,7 +69,7 @@ class Free(Joint):
         """Position rate R v; quaternion rate ``q̇ = 1/2 q (ω, 0)``."""
         linear = Full(from_quaternion(q[3], q[4], q[5], q[6])).out((v[0], v[1], v[2]))
         x, y, z, w = q[3:]
-        a, b, c = (0.5 * rate for rate in v[3:])
+        a, b, c = (rate / 2 for rate in v[3:])
         return (
             *linear,
             w * a + y * c - z * b,

@@ -1,0 +1,236 @@
+"""The paper's own matrices, multiplied out: P, H, C, S, K and the literal (13)-(15).
+
+For reading and for proving the recursive route; `orthogonality` is what gets emitted. Vectors are resolved
+in ground axes. Restated from Boiadzhiev & Lilov, "The orthogonality principle", J. Theor. Appl. Mech.
+(Sofia) XXIV(1), 1993.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from linegraph import vector
+from linegraph.algebra import Algebra
+from linegraph.joints import Moments
+from linegraph.kinematics import KinematicTree
+from linegraph.orthogonality import Arm, arms
+from linegraph.rotation import IDENTITY_MATRIX, Full, Inertia, product
+from linegraph.vector import ZERO, Matrix, Scalar, Vector, add, cross, dot, scale, subtract
+
+Integers = list[list[int]]
+Vectors = list[list[Vector]]
+
+
+@dataclass(frozen=True)
+class PaperMatrices:
+    """All matrices of the paper's final equations at a state.
+
+    Attributes:
+        P: joints x joints, the cutset matrix: P_kk = 1, P_kj = -1 where joint j sits on body k.
+        H: its inverse: H_kj = 1 where joint k lies on the path from the basement to body j.
+        C: bodies x joints of arms: C_kk from joint k to the mass centre of k, C_pk from that of p to k.
+        S, K: coordinates x joints of unit vectors, rotational and translational.
+        A, B: ``A v̇ = B`` without joint efforts: A is the mass matrix, -B the bias.
+    """
+
+    P: Integers
+    H: Integers
+    C: Vectors
+    S: Vectors
+    K: Vectors
+    A: list[list[Scalar]]
+    B: list[Scalar]
+
+
+class _Body(NamedTuple):
+    """A link resolved in ground axes."""
+
+    rotation: Matrix
+    center: Vector
+    mass: Scalar
+    inertia: Full
+    angular: Vector
+    remainder: Vector
+
+
+def paper_matrices(
+    tree: KinematicTree, algebra: Algebra, q: Iterable[Scalar], v: Iterable[Scalar]
+) -> PaperMatrices:
+    """Build the matrices literally and multiply them out.
+
+    With H = P^-1 and Λ = S x (H C) + K,
+
+        A = (S H) I (S H)^T + Λ (H m H^T) Λ^T
+        B = S H (T' - I ε - ω x I ω) + Λ H F' - Λ (H m H^T) G
+    """
+    crossed = arms(tree, algebra, q, v)
+    bodies = _bodies(tree, crossed)
+    p, h = _topology(tree)
+    c = _arm_vectors(tree, crossed, bodies)
+    s, k = _axes(tree, crossed, bodies)
+    sh = _gather(s, h)
+    lam = _lever(s, h, c, k)
+    mass = _carried_mass(h, bodies)
+    remainder = _remainders(tree, crossed, bodies, c)
+    size, n = len(s), range(len(bodies))
+    a = [[_quadratic(sh[i], sh[j], bodies) for j in range(size)] for i in range(size)]
+    b: list[Scalar] = []
+    weights = [scale(body.mass, tree.gravity) for body in bodies]
+    for i in range(size):
+        for j in range(size):
+            pairs = (mass[x][y] * dot(lam[i][x], lam[j][y]) for x in n for y in n)
+            a[i][j] = a[i][j] + sum(pairs)
+        torque = -sum(dot(sh[i][x], _euler(bodies[x])) for x in n)
+        weight = sum(h[x][y] * dot(lam[i][x], weights[y]) for x in n for y in n)
+        inertia = sum(mass[x][y] * dot(lam[i][x], remainder[y]) for x in n for y in n)
+        b.append(torque + weight - inertia)
+    return PaperMatrices(p, h, c, s, k, a, b)
+
+
+def _topology(tree: KinematicTree) -> tuple[Integers, Integers]:
+    """P and its inverse H, by substitution from the leaves."""
+    size = len(tree.links)
+    p = [[int(i == j) for j in range(size)] for i in range(size)]
+    h = [[int(i == j) for j in range(size)] for i in range(size)]
+    for j, link in enumerate(tree.links):
+        if link.parent >= 0:
+            p[link.parent][j] = -1
+            for i in range(size):
+                h[i][j] += h[i][link.parent]
+    return p, h
+
+
+def _bodies(tree: KinematicTree, crossed: list[Arm]) -> list[_Body]:
+    """Orientation, angular velocity ω and its remainder ε with v̇ = 0, by H^T."""
+    bodies: list[_Body] = []
+    for link, arm in zip(tree.links, crossed, strict=True):
+        near = bodies[link.parent] if link.parent >= 0 else None
+        outer = near.rotation if near else IDENTITY_MATRIX
+        omega = near.angular if near else ZERO
+        epsilon = near.remainder if near else ZERO
+        rotation = product(outer, arm.rotation.matrix())
+        out = Full(rotation).out
+        relative = out(vector.combine(arm.rates, arm.motion.angular))
+        w = add(cross(omega, relative), out(arm.motion.angular_bias))
+        mass, center, inertia = _central(link.moments)
+        tensor = Full(_square(Full(rotation).congruence(inertia)))
+        bodies.append(
+            _Body(rotation, out(center), mass, tensor, add(omega, relative), add(epsilon, w))
+        )
+    return bodies
+
+
+def _central(moments: Moments) -> tuple[Scalar, Vector, Inertia]:
+    """Mass, mass centre and central inertia; a massless link keeps its origin as centre."""
+    m, first, (xx, xy, xz, yy, yz, zz) = moments
+    if m == 0:
+        return m, ZERO, moments.inertia
+    x, y, z = (component / m for component in first)
+    return (
+        m,
+        (x, y, z),
+        (
+            xx - m * (y * y + z * z),
+            xy + m * x * y,
+            xz + m * x * z,
+            yy - m * (x * x + z * z),
+            yz + m * y * z,
+            zz - m * (x * x + y * y),
+        ),
+    )
+
+
+def _arm_vectors(tree: KinematicTree, crossed: list[Arm], bodies: list[_Body]) -> Vectors:
+    """C: from each joint to the mass centres of the bodies it joins."""
+    size = len(bodies)
+    c: Vectors = [[ZERO] * size for _ in range(size)]
+    for k, link in enumerate(tree.links):
+        c[k][k] = bodies[k].center
+        if link.parent >= 0:
+            near = bodies[link.parent]
+            c[link.parent][k] = subtract(Full(near.rotation).out(crossed[k].at), near.center)
+    return c
+
+
+def _axes(tree: KinematicTree, crossed: list[Arm], bodies: list[_Body]) -> tuple[Vectors, Vectors]:
+    """S and K: what each coordinate turns and moves at each joint."""
+    size, n = len(tree.velocities), len(bodies)
+    s: Vectors = [[ZERO] * n for _ in range(size)]
+    k: Vectors = [[ZERO] * n for _ in range(size)]
+    for j, link in enumerate(tree.links):
+        out = Full(bodies[j].rotation).out
+        for a, freedom in enumerate(link.velocities):
+            motion = crossed[j].motion
+            s[freedom.index][j] = scale(freedom.ratio, out(motion.angular[a]))
+            k[freedom.index][j] = scale(freedom.ratio, out(motion.linear[a]))
+    return s, k
+
+
+def _gather(s: Vectors, h: Integers) -> Vectors:
+    """S H."""
+    n = range(len(h))
+    return [[_sum(scale(h[j][i], row[j]) for j in n) for i in n] for row in s]
+
+
+def _lever(s: Vectors, h: Integers, c: Vectors, k: Vectors) -> Vectors:
+    """Λ = S x (H C) + K."""
+    n = range(len(h))
+    hc = [[_sum(scale(h[j][i], c[i][x]) for i in n) for x in n] for j in n]
+    return [
+        [add(_sum(cross(row[j], hc[j][x]) for j in n), slide[x]) for x in n]
+        for row, slide in zip(s, k, strict=True)
+    ]
+
+
+def _carried_mass(h: Integers, bodies: list[_Body]) -> list[list[Scalar]]:
+    """H m H^T: the mass that two joints both carry."""
+    n = range(len(h))
+    return [[sum(h[x][i] * bodies[i].mass * h[y][i] for i in n) for y in n] for x in n]
+
+
+def _remainders(
+    tree: KinematicTree, crossed: list[Arm], bodies: list[_Body], c: Vectors
+) -> list[Vector]:
+    """G: what remains, with v̇ = 0, of the acceleration that each joint's pair of arms adds."""
+    remainders = []
+    for k, link in enumerate(tree.links):
+        far, motion = bodies[k], crossed[k].motion
+        out = Full(far.rotation).out
+        u = out(vector.combine(crossed[k].rates, motion.linear))
+        w = out(vector.combine(crossed[k].rates, motion.angular))
+        g = add(_turned(far, c[k][k]), add(cross(w, u), out(motion.linear_bias)))
+        if link.parent >= 0:
+            near = bodies[link.parent]
+            g = add(g, _turned(near, c[link.parent][k]))
+            g = add(g, scale(2, cross(near.angular, u)))
+        remainders.append(g)
+    return remainders
+
+
+def _turned(body: _Body, arm: Vector) -> Vector:
+    """ε x arm + ω x (ω x arm)."""
+    return add(cross(body.remainder, arm), cross(body.angular, cross(body.angular, arm)))
+
+
+def _euler(body: _Body) -> Vector:
+    """I ε + ω x I ω."""
+    return add(body.inertia.out(body.remainder), cross(body.angular, body.inertia.out(body.angular)))
+
+
+def _quadratic(a: list[Vector], b: list[Vector], bodies: list[_Body]) -> Scalar:
+    """One entry of (S H) I (S H)^T."""
+    return sum(dot(x, body.inertia.out(y)) for x, y, body in zip(a, b, bodies, strict=True))
+
+
+def _square(j: Inertia) -> Matrix:
+    xx, xy, xz, yy, yz, zz = j
+    return ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
+
+
+def _sum(vectors: Iterable[Vector]) -> Vector:
+    total = ZERO
+    for a in vectors:
+        total = add(total, a)
+    return total

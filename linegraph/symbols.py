@@ -1,0 +1,212 @@
+"""sympy, the face: closed forms for people, and user expressions coming in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import sympy
+
+from linegraph import orthogonality
+from linegraph.errors import ModelError
+from linegraph.expression import Dag, Node
+from linegraph.paper import PaperMatrices, paper_matrices
+
+if TYPE_CHECKING:
+    from linegraph.algebra import Algebra
+    from linegraph.derive import Derivation
+    from linegraph.kinematics import KinematicTree
+    from linegraph.vector import Scalar
+
+Expr: TypeAlias = Any
+"""A sympy expression; sympy carries no types."""
+
+FUNCTIONS = ("sin", "cos", "sqrt")
+
+
+class Sympy:
+    """The algebra of sympy expressions: every argument's entry is a symbol of its own name.
+
+    Args:
+        names: for each argument, the symbols' names in order.
+    """
+
+    def __init__(self, names: Mapping[str, Iterable[str]] | None = None) -> None:
+        """Keep the names that symbols are shown with."""
+        self._names = {argument: list(given) for argument, given in (names or {}).items()}
+
+    def symbol(self, argument: str, place: int | str | None = None) -> Expr:
+        """The symbol of this entry."""
+        if place is None or isinstance(place, str):
+            return sympy.Symbol(place or argument)
+        return sympy.Symbol(self._names[argument][place])
+
+    sin = staticmethod(sympy.sin)
+    cos = staticmethod(sympy.cos)
+    sqrt = staticmethod(sympy.sqrt)
+
+
+class Symbolic:
+    """A derivation's equations as sympy objects.
+
+    Coordinates are written as the joints' names; velocities as ``name_dot``, or by their own names
+    (``root_wx``) where v is not the derivative of q.
+
+    Attributes:
+        q, v: column matrices of symbols.
+    """
+
+    def __init__(self, derivation: Derivation) -> None:
+        """Derive over sympy; nothing is simplified until asked for."""
+        parameters = {name: sympy.Symbol(name) for name in derivation.model.parameters}
+        plain = derivation.tree(Sympy(), parameters)
+        positions = [quantity.name for quantity in plain.positions]
+        rates = [quantity.name for quantity in plain.velocities]
+        rates = [f"{name}_dot" if name in positions else name for name in rates]
+        self.algebra = Sympy({"q": positions, "v": rates})
+        self.tree: KinematicTree = plain
+        self.q = sympy.Matrix([sympy.Symbol(name) for name in positions])
+        self.v = sympy.Matrix([sympy.Symbol(name) for name in rates])
+
+    @cached_property
+    def _arms(self) -> list[orthogonality.Arm]:
+        return orthogonality.arms(self.tree, self.algebra, list(self.q), list(self.v))
+
+    @cached_property
+    def mass_matrix(self) -> Expr:
+        """M(q) as a sympy Matrix, simplified entry by entry."""
+        rows = orthogonality.mass_matrix(self.tree, self.algebra, self._arms)
+        return sympy.Matrix(rows).applyfunc(simplified)
+
+    @cached_property
+    def bias(self) -> Expr:
+        """h(q, v) as a sympy column Matrix, simplified entry by entry."""
+        rows = orthogonality.inverse_dynamics(self.tree, self.algebra, self._arms)
+        return sympy.Matrix(rows).applyfunc(simplified)
+
+    @cached_property
+    def paper_matrices(self) -> PaperMatrices:
+        """P, H, C, S, K and the literal (13)-(15) of the paper, over sympy and not simplified."""
+        return paper_matrices(self.tree, self.algebra, list(self.q), list(self.v))
+
+    @cached_property
+    def energy(self) -> tuple[Expr, Expr]:
+        """Kinetic and potential energy."""
+        kinetic, potential = orthogonality.energy(self.tree, self.algebra, self._arms)
+        return simplified(kinetic), simplified(potential)
+
+
+def simplified(expression: Expr) -> Expr:
+    """Products multiplied out, sin^2 + cos^2 merged, common factors collected."""
+    whole = sympy.sympify(expression, strict=True).replace(
+        lambda e: e.is_Float and e == int(e), lambda e: sympy.Integer(int(e))
+    )
+    return sympy.factor_terms(sympy.trigsimp(sympy.expand(whole)))
+
+
+def evaluate(expression: Expr, algebra: Algebra, parameters: Mapping[str, Scalar]) -> Scalar:
+    """Walk a sympy expression of parameters into another algebra.
+
+    Raises:
+        ModelError: a symbol is no parameter, or an operation has no counterpart in emitted code.
+
+    Example:
+        >>> from linegraph.algebra import Floats
+        >>> m, l = sympy.symbols("m l")
+        >>> evaluate(m * l**2 / 3, Floats(), {"m": 6.0, "l": 0.5})
+        0.5
+    """
+
+    def walk(e: Expr) -> Scalar:
+        if e.is_Symbol:
+            if e.name not in parameters:
+                problem = "is used but not declared; declare it with model.parameter(...)"
+                raise ModelError(f'parameter "{e.name}"', problem)
+            return parameters[e.name]
+        if e.is_Number or e.is_NumberSymbol:
+            return number(e)
+        return _apply(e, [walk(part) for part in e.args], algebra)
+
+    return walk(sympy.sympify(expression))
+
+
+def number(e: Expr) -> Scalar:
+    """A sympy number as an int where exact, else as a float."""
+    return int(e) if e.is_Integer else float(e)
+
+
+def _apply(e: Expr, parts: list[Scalar], algebra: Algebra) -> Scalar:
+    """One operation of sympy's over another algebra."""
+    if e.is_Add:
+        return _fold(lambda a, b: a + b, parts)
+    if e.is_Mul:
+        return _fold(lambda a, b: a * b, parts)
+    if e.is_Pow:
+        return power(parts[0], e.exp, algebra)
+    name = e.func.__name__
+    if name in FUNCTIONS:
+        return getattr(algebra, name)(parts[0])
+    raise ModelError("", f"{name}(...) in {e} has no counterpart in emitted code")
+
+
+def power(base: Scalar, exponent: Expr, algebra: Algebra) -> Scalar:
+    """Integer and half-integer powers by products, roots and one division.
+
+    Raises:
+        ModelError: any other exponent.
+    """
+    twice = 2 * exponent
+    if not twice.is_Integer or abs(twice) > 128:
+        raise ModelError("", f"the power {exponent} has no counterpart in emitted code")
+    whole, half = divmod(abs(int(twice)), 2)
+    result: Scalar = algebra.sqrt(base) if half else 1
+    for _ in range(whole):
+        result = result * base
+    return 1 / result if exponent.is_negative else result
+
+
+def to_sympy(node: Scalar, dag: Dag, names: Mapping[str, Iterable[str]]) -> Expr:
+    """A DAG node as a sympy expression, intermediates substituted."""
+    algebra = Sympy(names)
+    known: dict[int, Expr] = {}
+    pending = [node]
+    while pending:
+        top = pending[-1]
+        if not isinstance(top, Node) or top.index in known:
+            pending.pop()
+            continue
+        waiting = [x for x in (top.a, top.b) if isinstance(x, Node) and x.index not in known]
+        if waiting and top.op != "symbol":
+            pending += waiting
+            continue
+        known[top.index] = _shown(top, known, algebra)
+        pending.pop()
+    return known[node.index] if isinstance(node, Node) else sympy.sympify(node)
+
+
+def _shown(node: Node, known: Mapping[int, Expr], algebra: Sympy) -> Expr:
+    def operand(x: Any) -> Expr:
+        return known[x.index] if isinstance(x, Node) else sympy.sympify(x)
+
+    if node.op == "symbol":
+        return algebra.symbol(node.a, node.b)
+    actions: dict[str, Callable[..., Expr]] = {
+        "neg": lambda a: -a,
+        "add": lambda a, b: a + b,
+        "sub": lambda a, b: a - b,
+        "mul": lambda a, b: a * b,
+        "div": lambda a, b: a / b,
+        "sin": sympy.sin,
+        "cos": sympy.cos,
+        "sqrt": sympy.sqrt,
+    }
+    operands = [operand(x) for x in (node.a, node.b) if x is not None]
+    return actions[node.op](*operands)
+
+
+def _fold(action: Callable[[Scalar, Scalar], Scalar], parts: list[Scalar]) -> Scalar:
+    result = parts[0]
+    for part in parts[1:]:
+        result = action(result, part)
+    return result
