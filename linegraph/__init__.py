@@ -1,11 +1,11 @@
 """linegraph: equations of motion from linear (terminal) graphs, derived symbolically, emitted as code."""
 
 from linegraph.derive import Derivation, derive
+from linegraph.emission import emit
 from linegraph.errors import LinegraphError, ModelError, NameRefused, SourceError
 from linegraph.model import Model
 from linegraph.parameters import Parameter
-
-__version__ = "0.1.0"
+from linegraph.version import __version__
 
 __all__ = [
     "Derivation",
@@ -15,5 +15,7 @@ __all__ = [
     "NameRefused",
     "Parameter",
     "SourceError",
+    "__version__",
     "derive",
+    "emit",
 ]

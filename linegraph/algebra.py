@@ -12,9 +12,10 @@ Numbers belong to every algebra.
 from __future__ import annotations
 
 import math
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
-from linegraph.vector import Scalar
+if TYPE_CHECKING:
+    from linegraph.vector import Scalar
 
 
 class Algebra(Protocol):

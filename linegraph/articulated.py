@@ -9,17 +9,20 @@ Seen from a link's origin, forces follow from accelerations by
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph import vector
-from linegraph.algebra import Algebra
 from linegraph.factorization import Solution
-from linegraph.joints import Moments
-from linegraph.kinematics import KinematicTree
 from linegraph.orthogonality import Arm, bias_accelerations, bias_force, caption, set_label
-from linegraph.rotation import Inertia, Rotation
 from linegraph.vector import Matrix, Scalar, Vector, add, cross, dot, subtract
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from linegraph.algebra import Algebra
+    from linegraph.joints import Moments
+    from linegraph.kinematics import KinematicTree
+    from linegraph.rotation import Inertia, Rotation
 
 Wrench = tuple[Vector, Vector]
 """(torque about the origin, force)"""
@@ -67,7 +70,7 @@ class Articulated(NamedTuple):
         """Two maps added."""
         a = tuple(x + y for x, y in zip(self.a, other.a, strict=True))
         c = tuple(x + y for x, y in zip(self.c, other.c, strict=True))
-        return Articulated(a, _plus(self.b, other.b), c)  # type: ignore[arg-type]
+        return Articulated(a, _plus(self.b, other.b), c)
 
 
 def rigid(moments: Moments) -> Articulated:

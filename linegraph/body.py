@@ -79,8 +79,10 @@ def inertia_of(given: Any, who: str) -> Inertia:
     if isinstance(given, Mapping):
         unknown = [key for key in given if key not in _AXES]
         if unknown:
-            raise ModelError(who, f"unknown inertia entry {unknown[0]!r}; entries are {', '.join(_AXES)}")
-        return tuple(given.get(key, 0) for key in _AXES)  # type: ignore[return-value]
+            raise ModelError(
+                who, f"unknown inertia entry {unknown[0]!r}; entries are {', '.join(_AXES)}"
+            )
+        return tuple(given.get(key, 0) for key in _AXES)
     rows = [list(row) if isinstance(row, Sequence) else row for row in given]
     if len(rows) == 3 and not any(isinstance(row, list) for row in rows):
         return (rows[0], 0, 0, rows[1], 0, rows[2])

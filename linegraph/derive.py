@@ -9,7 +9,6 @@ Each arrow is one pure function.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -20,6 +19,8 @@ from linegraph.kinematics import KinematicTree, kinematic_tree, mechanical_topol
 from linegraph.regularity import require_regular
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from linegraph.graph import SystemGraph
     from linegraph.model import Model
     from linegraph.topology import Topology

@@ -15,9 +15,9 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import Any, Union
+from typing import Any, TypeAlias
 
-Number = Union[int, float, Fraction]
+Number: TypeAlias = int | float | Fraction
 
 SYMBOL, NEG, ADD, SUB, MUL, DIV = "symbol", "neg", "add", "sub", "mul", "div"
 FUNCTIONS = ("sin", "cos", "sqrt")
@@ -76,7 +76,7 @@ class Node:
         return self.dag.divide(other, self)
 
 
-Operand = Union[Node, Number]
+Operand: TypeAlias = "Node | Number"
 
 
 class Dag:
@@ -121,21 +121,16 @@ class Dag:
         if not isinstance(x, Node):
             return -x
         if x.op == NEG:
-            return x.a
+            inner: Node = x.a
+            return inner
         return self._node(NEG, x, None)
 
     def add(self, x: Operand, y: Operand) -> Operand:
         """``x + y``; negations are pulled out, so they cost nothing."""
-        if not isinstance(y, Node):
-            if not isinstance(x, Node):
-                return x + y
-            x, y = y, x
         if not isinstance(x, Node):
-            if x == 0:
-                return y
-            if y.op == NEG:
-                return self.subtract(x, y.a)
-            return self._node(ADD, y, x)
+            return self._shift(y, x) if isinstance(y, Node) else x + y
+        if not isinstance(y, Node):
+            return self._shift(x, y)
         if y.op == NEG:
             return self.subtract(x, y.a)
         if x.op == NEG:
@@ -159,12 +154,10 @@ class Dag:
 
     def multiply(self, x: Operand, y: Operand) -> Operand:
         """``x * y``; signs move outward, constant factors meet."""
-        if not isinstance(y, Node):
-            if not isinstance(x, Node):
-                return x * y
-            x, y = y, x
         if not isinstance(x, Node):
-            return self._scale(x, y)
+            return self._scale(x, y) if isinstance(y, Node) else x * y
+        if not isinstance(y, Node):
+            return self._scale(y, x)
         if x.op == NEG:
             return self.negate(self.multiply(x.a, y))
         if y.op == NEG:
@@ -185,6 +178,11 @@ class Dag:
         if y.op == NEG:
             return self.negate(self.divide(x, y.a))
         return self._node(DIV, x, y)
+
+    def _shift(self, x: Node, number: Number) -> Operand:
+        if number == 0:
+            return x
+        return self._node(SUB, number, x.a) if x.op == NEG else self._node(ADD, x, number)
 
     def _scale(self, factor: Number, x: Node) -> Operand:
         if factor == 0:

@@ -6,10 +6,12 @@ matrix itself: only ancestors of a joint are coupled with it (Featherstone 2005)
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from linegraph.vector import Scalar
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from linegraph.vector import Scalar
 
 
 class Solution(NamedTuple):
@@ -43,7 +45,7 @@ def solve(
         k = outward[place]
         pivots[k] = m[k][k]
         inverse = 1 / pivots[k]
-        inner = [i for i in outward[:place] if not m[k][i] == 0]
+        inner = [i for i in outward[:place] if m[k][i] != 0]
         for i in inner:
             factor[k][i] = m[k][i] * inverse
         for n, i in enumerate(inner):

@@ -6,12 +6,14 @@ several connected parts are ordinary.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.errors import ModelError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
 
 
 class Edge(NamedTuple):
@@ -85,15 +87,15 @@ class IntegerMatrix:
 
     def __str__(self) -> str:
         """A table with names along both sides; zeros are dots."""
-        cells = [["", *self.columns]]
+        table = [["", *self.columns]]
         for name, row in zip(self.rows, self, strict=True):
-            cells.append([name, *(f"{value:+d}" if value else "." for value in row)])
-        widths = [max(len(row[j]) for row in cells) for j in range(len(cells[0]))]
+            table.append([name, *(f"{value:+d}" if value else "." for value in row)])
+        widths = [max(len(line[j]) for line in table) for j in range(len(table[0]))]
         lines = []
-        for row in cells:
-            head = row[0].ljust(widths[0])
-            lines.append("  ".join([head] + [c.rjust(w) for c, w in zip(row[1:], widths[1:], strict=True)]))
-        return "\n".join(line.rstrip() for line in lines)
+        for first, *rest in table:
+            cells = [cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True)]
+            lines.append("  ".join([first.ljust(widths[0]), *cells]).rstrip())
+        return "\n".join(lines)
 
 
 @dataclass(frozen=True)
@@ -168,7 +170,9 @@ def unite(terminal_graphs: Iterable[Iterable[Edge]]) -> SystemGraph:
         for edge in terminal_graph:
             known = edges.setdefault(edge.domain, {})
             if edge.name in known:
-                raise ModelError(f'edge "{edge.name}"', f"arises twice in {edge.domain}; rename a component")
+                raise ModelError(
+                    f'edge "{edge.name}"', f"arises twice in {edge.domain}; rename a component"
+                )
             known[edge.name] = edge
             vertices.setdefault(edge.domain, {}).update({edge.tail: None, edge.head: None})
     return SystemGraph(

@@ -9,21 +9,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from linegraph import vector
 from linegraph.algebra import Algebra, Floats
 from linegraph.body import GROUND, Body, Placement
 from linegraph.domains import TRANSLATION
 from linegraph.errors import ModelError
-from linegraph.graph import SystemGraph
 from linegraph.joints import Joint, Moments
-from linegraph.model import Model
 from linegraph.parameters import resolver
-from linegraph.program import Quantity
 from linegraph.rotation import IDENTITY_MATRIX, Rotation, product, rotation_of, snapped
 from linegraph.topology import Step, Topology, choose_forest
 from linegraph.vector import ZERO, Scalar, Vector
+
+if TYPE_CHECKING:
+    from linegraph.graph import SystemGraph
+    from linegraph.model import Model
+    from linegraph.program import Quantity
 
 Resolve = Callable[[Any], Scalar]
 _NO_MOMENTS = Moments(0, ZERO, (0, 0, 0, 0, 0, 0))
@@ -136,7 +138,7 @@ def carried(moments: Moments, rotation: Rotation, at: Vector) -> Moments:
 def joined(a: Moments, b: Moments) -> Moments:
     """The moments of two bodies together, about one origin and in one frame."""
     inertia = tuple(x + y for x, y in zip(a.inertia, b.inertia, strict=True))
-    return Moments(a.mass + b.mass, vector.add(a.first, b.first), inertia)  # type: ignore[arg-type]
+    return Moments(a.mass + b.mass, vector.add(a.first, b.first), inertia)
 
 
 def body_moments(body: Body, resolve: Resolve) -> Moments:
@@ -144,8 +146,8 @@ def body_moments(body: Body, resolve: Resolve) -> Moments:
     mass = resolve(body.mass)
     inertia = tuple(resolve(x) for x in body.inertia)
     if body.first is not None:
-        return Moments(mass, _resolved(body.first, resolve), inertia)  # type: ignore[arg-type]
-    central = Moments(mass, ZERO, inertia)  # type: ignore[arg-type]
+        return Moments(mass, _resolved(body.first, resolve), inertia)
+    central = Moments(mass, ZERO, inertia)
     return carried(central, Rotation(), _resolved(body.center or ZERO, resolve))
 
 
@@ -337,4 +339,3 @@ def _swept(turned: Vector, original: Vector) -> Vector:
 
 def _resolved(a: Vector, resolve: Resolve) -> Vector:
     return (resolve(a[0]), resolve(a[1]), resolve(a[2]))
-

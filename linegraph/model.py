@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Concatenate, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 
 from linegraph.body import GROUND, MASS_CENTER, Body, Placement, inertia_of, orientation, unit
 from linegraph.domains import ROTATION, TRANSLATION
@@ -15,6 +14,9 @@ from linegraph.joints import Fixed, Free, Joint, Planar, Prismatic, Revolute
 from linegraph.parameters import Parameter, is_number
 from linegraph.rotation import IDENTITY_MATRIX, snapped
 from linegraph.vector import ZERO, Matrix, Vector
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
 
 STANDARD_GRAVITY: Vector = (0, 0, -9.81)
 SNAP = 1e-11
@@ -45,7 +47,8 @@ class BodyHandle:
             name: unique on this body.
             at: origin in the body's frame (m).
             rpy: orientation by turns about the body's fixed x, y, z, in radians; or
-            axis, angle: by one turn (rad) about a direction; or
+            axis: by one turn about this direction,
+            angle: by so many radians; or
             rotation: by the matrix whose columns are the frame's axes in body axes.
 
         Returns:
@@ -78,12 +81,17 @@ def _adds(kind: Callable[Concatenate[str, tuple[str, str], Ask], Kind]) -> Any:
     """A builder method that adds a joint of one kind: the line in the register of words."""
 
     def add(
-        self: Model, name: str, between: tuple[Terminal, Terminal], *args: Ask.args, **kw: Ask.kwargs
+        self: Model,
+        name: str,
+        between: tuple[Terminal, Terminal],
+        *args: Ask.args,
+        **kw: Ask.kwargs,
     ) -> Kind:
         tail, head = between
         return self.add_joint(kind(name, (str(tail), str(head)), *args, **kw))
 
     add.__doc__ = kind.__doc__
+    add.__name__ = str(getattr(kind, "kind", add.__name__))
     return add
 
 
@@ -116,7 +124,7 @@ class Model:
         self.name = name
         self.about = about
         self.snap = snap
-        self.gravity = _vector(gravity, "gravity")
+        self.gravity = gravity
         self.bodies: dict[str, Body] = {}
         self.ground = BodyHandle(self, GROUND)
         self.ground_frames: dict[str, Placement] = {}
@@ -130,6 +138,15 @@ class Model:
     planar = _adds(Planar)
     free = _adds(Free)
     fixed = _adds(Fixed)
+
+    @property
+    def gravity(self) -> Vector:
+        """Acceleration of free fall in ground axes (m/s^2); may be set, also to parameters."""
+        return self._gravity
+
+    @gravity.setter
+    def gravity(self, acceleration: Sequence[Any]) -> None:
+        self._gravity = _vector(acceleration, "gravity")
 
     @property
     def joints(self) -> tuple[Joint, ...]:
@@ -241,7 +258,9 @@ class Model:
         """
         who = f'joint "{joint}"'
         if joint not in self._joints:
-            raise ModelError(who, f"there is no such joint to lock; {_nearest(joint, self._joints)}")
+            raise ModelError(
+                who, f"there is no such joint to lock; {_nearest(joint, self._joints)}"
+            )
         found = self._joints[joint]
         if found.freedoms != 1:
             raise ModelError(who, f"is {found.kind}; only joints of one freedom can be locked")
@@ -298,7 +317,9 @@ class Model:
                     raise ModelError(who, f'there is no body or frame "{terminal}"; {hint}')
             if len({terminals[terminal][0] for terminal in joint.between}) == 1:
                 raise ModelError(who, f'connects body "{terminals[joint.between[0]][0]}" to itself')
-        return unite([self._ground_edges(), *(b.edges() for b in self.bodies.values()), self._joint_edges()])
+        return unite(
+            [self._ground_edges(), *(b.edges() for b in self.bodies.values()), self._joint_edges()]
+        )
 
     def _ground_edges(self) -> list[Edge]:
         return [

@@ -17,15 +17,18 @@ working frame, its mass distribution taken about its joint.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph import vector
-from linegraph.algebra import Algebra
 from linegraph.joints import Moments, Motion
 from linegraph.kinematics import Freedom, KinematicTree, Link, carried, joined
-from linegraph.rotation import Inertia, Rotation
 from linegraph.vector import ZERO, Scalar, Vector, add, cross, dot
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from linegraph.algebra import Algebra
+    from linegraph.rotation import Inertia, Rotation
 
 Rows = list[list[Scalar]]
 
@@ -130,7 +133,10 @@ def inverse_dynamics(
     Motion runs from the root to the leaves (H^T), d'Alembert's forces and torques back (H).
     """
     spins = _spins(tree, algebra, crossed, acceleration)
-    forces = [_d_alembert(link.moments, spin, algebra, link) for link, spin in zip(tree.links, spins, strict=True)]
+    forces = [
+        _d_alembert(link.moments, spin, algebra, link)
+        for link, spin in zip(tree.links, spins, strict=True)
+    ]
     total: list[Scalar] = [0] * len(tree.velocities)
     for i in reversed(range(len(tree.links))):
         link = tree.links[i]
@@ -174,7 +180,9 @@ def coordinate_rates(
         if any(f.ratio != 1 or f.offset != 0 for f in link.positions):
             continue
         own = link.joint.rates(
-            algebra, tuple(q[f.index] for f in link.positions), tuple(v[f.index] for f in link.velocities)
+            algebra,
+            tuple(q[f.index] for f in link.positions),
+            tuple(v[f.index] for f in link.velocities),
         )
         for freedom, rate in zip(link.positions, own, strict=True):
             rates[freedom.index] = rate
@@ -364,6 +372,7 @@ def _coordinate(freedom: Freedom, q: tuple[Scalar, ...]) -> Scalar:
 
 
 def caption(link: Link) -> str:
+    """How comments in emitted code call a link: its joint and its bodies."""
     return f"{link.joint.name} -> {link.name}"
 
 

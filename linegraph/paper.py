@@ -7,17 +7,20 @@ in ground axes. Restated from Boiadzhiev & Lilov, "The orthogonality principle",
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph import vector
-from linegraph.algebra import Algebra
-from linegraph.joints import Moments
-from linegraph.kinematics import KinematicTree
 from linegraph.orthogonality import Arm, arms
 from linegraph.rotation import IDENTITY_MATRIX, Full, Inertia, product
 from linegraph.vector import ZERO, Matrix, Scalar, Vector, add, cross, dot, scale, subtract
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from linegraph.algebra import Algebra
+    from linegraph.joints import Moments
+    from linegraph.kinematics import KinematicTree
 
 Integers = list[list[int]]
 Vectors = list[list[Vector]]
@@ -216,7 +219,9 @@ def _turned(body: _Body, arm: Vector) -> Vector:
 
 def _euler(body: _Body) -> Vector:
     """I ε + ω x I ω."""
-    return add(body.inertia.out(body.remainder), cross(body.angular, body.inertia.out(body.angular)))
+    return add(
+        body.inertia.out(body.remainder), cross(body.angular, body.inertia.out(body.angular))
+    )
 
 
 def _quadratic(a: list[Vector], b: list[Vector], bodies: list[_Body]) -> Scalar:

@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from linegraph.vector import Scalar
-
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from linegraph.algebra import Algebra
+    from linegraph.vector import Scalar
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,13 @@ a reader should know of them stands in the labels and in the texts of the `Modul
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from linegraph.expression import NEG, SUB, SYMBOL, Node, Operand
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 INLINE_LIMIT = 6
 """An expression used once is written in place while the line stays below this many operations."""
@@ -157,14 +160,17 @@ def _count_uses(
     """How often each node is used, and how often of that only to be negated."""
     uses = dict.fromkeys((node.index for node in live), 0)
     negated: dict[int, int] = {}
-    for node in live:
+    for root in _roots(results, checks):
+        uses[root.index] += 1
+    for node in reversed(live):
+        if node.op == NEG:
+            # a negation is written in place, so each of its uses is one of its operand
+            uses[node.a.index] += uses[node.index]
+            negated[node.a.index] = uses[node.index]
+            continue
         for operand in (node.a, node.b):
             if isinstance(operand, Node):
                 uses[operand.index] += 1
-        if node.op == NEG:
-            negated[node.a.index] = 1
-    for root in _roots(results, checks):
-        uses[root.index] += 1
     return uses, negated
 
 

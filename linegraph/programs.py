@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from linegraph import orthogonality
+from linegraph.articulated import forward_dynamics
 from linegraph.errors import ModelError
 from linegraph.expression import Dag, Node
-from linegraph.articulated import forward_dynamics
 from linegraph.factorization import Solution, solve
 from linegraph.program import Argument, Call, Check, Module, Program, Quantity, Result, assemble
 from linegraph.regularity import SINGULAR, is_solid
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
     from linegraph.derive import Derivation
     from linegraph.kinematics import KinematicTree
     from linegraph.vector import Scalar
@@ -109,7 +109,7 @@ class _Functions:
 
     @cached_property
     def bias(self) -> Result:
-        """h as a result."""
+        """H as a result."""
         entries = orthogonality.inverse_dynamics(self.short, self.dag, self.arms)
         return Result("h", (len(entries),), tuple(entries), "bias vector")
 
@@ -168,7 +168,10 @@ def _factored(f: _Functions) -> Program:
     f.dag.label = "right-hand side Q - h"
     right = [effort - f.dag.symbol("h", i) for i, effort in enumerate(f.efforts)]
     f.dag.label = "M = L^T D L from the leaves to the root, then back"
-    rows = [[f.dag.symbol("M", i * size + j) if used else 0 for j, used in enumerate(row)] for i, row in enumerate(f.pattern)]
+    rows = [
+        [f.dag.symbol("M", i * size + j) if used else 0 for j, used in enumerate(row)]
+        for i, row in enumerate(f.pattern)
+    ]
     solution = solve(rows, right, _outward(f.tree))
     local = (Argument("M", size * size, "mass matrix"), Argument("h", size, "bias vector"))
     names = tuple(argument.name for argument in f.arguments("q", "v"))
@@ -179,11 +182,16 @@ def _factored(f: _Functions) -> Program:
 def _factored_cost(f: _Functions) -> int:
     """Operations of `equations` and of what `_factored` adds: p(p+1) + 4p + 3 for p couplings inward."""
     place = {k: n for n, k in enumerate(_outward(f.tree))}
-    inward = [sum(used and place[j] < place[i] for j, used in enumerate(row)) for i, row in enumerate(f.pattern)]
+    inward = [
+        sum(used and place[j] < place[i] for j, used in enumerate(row))
+        for i, row in enumerate(f.pattern)
+    ]
     return _equations(f).operations + sum(p * (p + 1) + 4 * p + 3 for p in inward)
 
 
-def _solved(f: _Functions, solution: Solution, bounds: list[Scalar], calls: tuple[Call, ...]) -> Program:
+def _solved(
+    f: _Functions, solution: Solution, bounds: list[Scalar], calls: tuple[Call, ...]
+) -> Program:
     checks = tuple(
         Check(pivot, bound, i + 1, f"the mass matrix is singular at {f.tree.velocities[i].name}")
         for i, (pivot, bound) in enumerate(zip(solution.pivots, bounds, strict=True))
@@ -205,7 +213,9 @@ def _coordinate_rates(f: _Functions) -> Program:
 def _energy(f: _Functions) -> Program:
     crossed = orthogonality.arms(f.tree, f.dag, f.q, f.v)
     entries = orthogonality.energy(f.tree, f.dag, crossed)
-    about = "Kinetic and potential energy of all that moves; potential zero at the origin of ground."
+    about = (
+        "Kinetic and potential energy of all that moves; potential zero at the origin of ground."
+    )
     result = Result("E", (2,), entries, "kinetic and potential energy (J)")
     return assemble("energy", about, f.arguments("q", "v"), (result,))
 

@@ -76,7 +76,7 @@ class Turn:
         turned[ij] = c * twist - j[ij]
         turned[ik] = c * j[ik] - s * j[jk]
         turned[jk] = s * j[ik] + c * j[jk]
-        return tuple(turned)  # type: ignore[return-value]
+        return tuple(turned)
 
     def inverse(self) -> Turn:
         """The turn by the opposite angle."""
@@ -213,7 +213,7 @@ def snapped(m: Matrix, within: float) -> Matrix:
         return x
 
     x, y, z = (tuple(snap(entry) for entry in row) for row in m)
-    return (x, y, z)  # type: ignore[return-value]
+    return (x, y, z)
 
 
 def product(a: Matrix, b: Matrix) -> Matrix:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -14,6 +13,8 @@ from linegraph.expression import Dag, Node
 from linegraph.paper import PaperMatrices, paper_matrices
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
     from linegraph.algebra import Algebra
     from linegraph.derive import Derivation
     from linegraph.kinematics import KinematicTree
@@ -64,6 +65,8 @@ class Symbolic:
         positions = [quantity.name for quantity in plain.positions]
         rates = [quantity.name for quantity in plain.velocities]
         rates = [f"{name}_dot" if name in positions else name for name in rates]
+        for name in {*positions, *rates} & parameters.keys():
+            raise ModelError(f'parameter "{name}"', "has the name of a coordinate; rename one")
         self.algebra = Sympy({"q": positions, "v": rates})
         self.tree: KinematicTree = plain
         self.q = sympy.Matrix([sympy.Symbol(name) for name in positions])
@@ -99,10 +102,15 @@ class Symbolic:
 
 def simplified(expression: Expr) -> Expr:
     """Products multiplied out, sin^2 + cos^2 merged, common factors collected."""
-    whole = sympy.sympify(expression, strict=True).replace(
+    whole = _whole(sympy.sympify(expression, strict=True))
+    return _whole(sympy.factor_terms(sympy.trigsimp(sympy.expand(whole))))
+
+
+def _whole(expression: Expr) -> Expr:
+    """Floats with integer values as integers: 2.0 x is 2 x to a reader."""
+    return expression.replace(
         lambda e: e.is_Float and e == int(e), lambda e: sympy.Integer(int(e))
     )
-    return sympy.factor_terms(sympy.trigsimp(sympy.expand(whole)))
 
 
 def evaluate(expression: Expr, algebra: Algebra, parameters: Mapping[str, Scalar]) -> Scalar:

@@ -11,13 +11,15 @@ construction fails unless they agree.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.errors import ModelError
 from linegraph.graph import Edge, IntegerMatrix, Projection
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
 
 
 class Step(NamedTuple):
@@ -162,9 +164,7 @@ def choose_forest(
     for name in wanted:
         if name not in names:
             raise ModelError(f'branch "{name}"', "there is no edge of that name")
-    order = sorted(
-        projection.edges, key=lambda e: (e.name not in wanted, weights.get(e.name, 0.0))
-    )
+    order = sorted(projection.edges, key=lambda e: (e.name not in wanted, weights.get(e.name, 0.0)))
     part = {vertex: vertex for vertex in projection.vertices}
 
     def find(vertex: str) -> str:

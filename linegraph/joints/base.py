@@ -12,12 +12,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
-from linegraph.program import Quantity
 from linegraph.rotation import IDENTITY_MATRIX, Inertia, Rotation
 from linegraph.vector import ZERO, Matrix, Scalar, Vector
 
 if TYPE_CHECKING:
     from linegraph.algebra import Algebra
+    from linegraph.program import Quantity
 
 
 class Motion(NamedTuple):

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from linegraph.joints.base import Joint, Motion
-from linegraph.program import Quantity
 from linegraph.rotation import Rotation
 from linegraph.vector import ZERO, Scalar
 
 if TYPE_CHECKING:
     from linegraph.algebra import Algebra
+    from linegraph.program import Quantity
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,9 @@ class Free(Joint):
             for c in "xyz"
         ]
         angular = [
-            Quantity(f"{self.name}_w{c}", "rad/s", f"angular velocity {c} of {self.name}, in head axes")
+            Quantity(
+                f"{self.name}_w{c}", "rad/s", f"angular velocity {c} of {self.name}, in head axes"
+            )
             for c in "xyz"
         ]
         return tuple(linear + angular)

@@ -49,7 +49,7 @@ class Planar(Joint):
         )
 
     def alignment(self) -> Matrix:
-        """z onto the normal."""
+        """Z onto the normal."""
         return z_onto(self.axis)
 
     def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:

@@ -35,7 +35,7 @@ class Prismatic(Joint):
         return (Quantity(self.name, "m/s", f"rate of prismatic joint {self.name}"),)
 
     def alignment(self) -> Matrix:
-        """z onto the axis."""
+        """Z onto the axis."""
         return z_onto(self.axis)
 
     def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:

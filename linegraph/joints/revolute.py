@@ -35,7 +35,7 @@ class Revolute(Joint):
         return (Quantity(self.name, "rad/s", f"rate of revolute joint {self.name}"),)
 
     def alignment(self) -> Matrix:
-        """z onto the axis."""
+        """Z onto the axis."""
         return z_onto(self.axis)
 
     def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:

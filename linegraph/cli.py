@@ -1,0 +1,236 @@
+"""The command line: `linegraph emit`, `linegraph show`, `linegraph completion`.
+
+The only module that prints. Results go to standard output, messages and progress to standard error. Exit
+status: 0 done, 2 the model or the call is wrong. Heavy modules are imported by the command that needs
+them.
+"""
+
+from __future__ import annotations
+
+import sys
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import click
+
+from linegraph.errors import LinegraphError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from linegraph.model import Model
+
+WRONG = 2
+LANGUAGES = ("c", "python")
+
+
+@contextmanager
+def _explained() -> Iterator[None]:
+    """Turn an error of the user's into one message and exit status 2."""
+    try:
+        yield
+    except LinegraphError as error:
+        click.echo(f"{click.style('error:', fg='red', bold=True)} {error}", err=True)
+        sys.exit(WRONG)
+
+
+def _about_model(command: Callable[..., None]) -> Callable[..., None]:
+    """The argument and options that every command on a model takes."""
+    options = (
+        click.argument("model", type=click.Path(path_type=str)),
+        click.option(
+            "--base",
+            type=click.Choice(["fixed", "floating"]),
+            default="fixed",
+            show_default=True,
+            help="Weld a URDF's root link to the ground, or let it float on a free joint named 'root'.",
+        ),
+        click.option(
+            "--lock",
+            "locks",
+            metavar="JOINT[=VALUE]",
+            multiple=True,
+            help="Weld a joint at a value of its coordinate (rad or m; default 0). Repeatable.",
+        ),
+        click.option(
+            "--parameters",
+            type=click.Choice(["symbolic", "folded"]),
+            help="Keep masses, moments and offsets as named parameters of the emitted functions, or fold "
+            "their values into the code. Default: folded for a URDF.",
+        ),
+        click.option(
+            "--snap",
+            type=click.FloatRange(0, 0.01),
+            default=1e-11,
+            show_default=True,
+            help="Round rotation entries this close to 0, 1, -1, 1/2 or -1/2 to these values: the dust of "
+            "decimal angles.",
+        ),
+    )
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.version_option(package_name="linegraph-dynamics", prog_name="linegraph")
+def main() -> None:
+    """Equations of motion from linear (terminal) graphs, emitted as C and Python.
+
+    linegraph reads a robot or mechanism, unites its terminal graphs into the system graph, picks a tree,
+    derives
+
+        M(q) v' + h(q, v) = Q(u),    q' = N(q) v
+
+    by the principle of orthogonality, fully symbolically, and writes source files that need no library.
+
+    \b
+    Examples:
+      linegraph emit panda.urdf --out build
+      linegraph emit anymal.urdf --base floating --lang c --out build
+      linegraph emit panda.urdf --lock panda_finger_joint1=0.02 --out build
+      linegraph show panda.urdf
+
+    Exit status: 0 done; 2 the model or the call is wrong, nothing written.
+    """
+
+
+@main.command()
+@_about_model
+@click.option(
+    "--out",
+    metavar="DIR",
+    type=click.Path(file_okay=False, path_type=str),
+    default=".",
+    help="Folder for the files; made if need be.  [default: the current folder]",
+)
+@click.option(
+    "--name", metavar="NAME", help="Prefix of functions and files.  [default: the model's name]"
+)
+@click.option(
+    "--lang",
+    "languages",
+    type=click.Choice(LANGUAGES),
+    multiple=True,
+    help="Language to write; repeatable.  [default: all]",
+)
+def emit(
+    model: str,
+    base: str,
+    locks: tuple[str, ...],
+    parameters: str | None,
+    snap: float,
+    out: str,
+    name: str | None,
+    languages: tuple[str, ...],
+) -> None:
+    """Write the equations of motion of MODEL as source files.
+
+    MODEL is a URDF. Every moving joint that does not mimic another becomes a coordinate of its name, in
+    the order of a walk from the root, with its effort as an input; fixed joints are welded.
+
+    \b
+    Written are NAME.h and NAME.c (C99, only <math.h>, no allocation) and NAME.py (only NumPy) with
+      mass_matrix        M(q)
+      bias               h(q, v)
+      equations          M and h at once
+      inverse_dynamics   tau = M a + h
+      forward_dynamics   a = M^-1 (Q(u) - h)
+      coordinate_rates   q' = N(q) v
+      energy             kinetic and potential
+    """
+    with _explained():
+        from linegraph.emission import emit as write
+
+        system = _read(model, base, locks, parameters, snap)
+        with _progress() as tell:
+            written = write(
+                system,
+                out,
+                name=name,
+                languages=languages or None,
+                folded=parameters == "folded",
+                progress=tell,
+            )
+        for path in written:
+            click.echo(str(path))
+
+
+@main.command()
+@_about_model
+def show(
+    model: str, base: str, locks: tuple[str, ...], parameters: str | None, snap: float
+) -> None:
+    """Print what MODEL is made of and how its equations arise.
+
+    Bodies, joints, domains, the system graph, the chosen tree, the coordinates, and the fundamental
+    cutset and circuit matrices.
+    """
+    with _explained():
+        from linegraph.derive import derive
+        from linegraph.report import show as text
+
+        system = _read(model, base, locks, parameters, snap)
+        click.echo(text(derive(system), lambda title: click.style(title, bold=True)), nl=False)
+
+
+@main.command()
+@click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
+def completion(shell: str) -> None:
+    """Print the completion script for SHELL.
+
+    \b
+    For bash, add to ~/.bashrc:    eval "$(linegraph completion bash)"
+    For zsh, add to ~/.zshrc:      eval "$(linegraph completion zsh)"
+    For fish, once:                linegraph completion fish > ~/.config/fish/completions/linegraph.fish
+    """
+    from click.shell_completion import get_completion_class
+
+    kind = get_completion_class(shell)
+    if kind is None:
+        raise click.UsageError(f"no completion for {shell}")
+    click.echo(kind(main, {}, "linegraph", "_LINEGRAPH_COMPLETE").source())
+
+
+def _read(
+    source: str, base: str, locks: tuple[str, ...], parameters: str | None, snap: float
+) -> Model:
+    """Read a model file, lock joints, report what is odd."""
+    from linegraph.urdf import read
+
+    model = read(source, base=base, symbolic=parameters == "symbolic", snap=snap)
+    for lock in locks:
+        joint, value = _lock(lock)
+        model.lock(joint, value)
+    for warning in model.warnings:
+        click.echo(f"{click.style('warning:', fg='yellow', bold=True)} {warning}", err=True)
+    return model
+
+
+def _lock(text: str) -> tuple[str, float]:
+    """Split JOINT[=VALUE]; a joint's name may itself contain an equals sign."""
+    joint, sign, value = text.rpartition("=")
+    if not sign:
+        return text, 0.0
+    try:
+        return joint, float(value)
+    except ValueError:
+        raise click.BadParameter(
+            f"{value!r} is not a number (rad or m)", param_hint="--lock"
+        ) from None
+
+
+@contextmanager
+def _progress() -> Iterator[Callable[[str], None]]:
+    """Show the present stage on standard error while it is a terminal; leave nothing behind."""
+    if not sys.stderr.isatty():
+        yield lambda text: None
+        return
+
+    def tell(text: str) -> None:
+        click.echo(f"\r\x1b[K{text} ...", nl=False, err=True)
+
+    try:
+        yield tell
+    finally:
+        click.echo("\r\x1b[K", nl=False, err=True)

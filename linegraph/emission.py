@@ -1,0 +1,102 @@
+"""From a model to files: derive, render in each language, write."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linegraph.version import __version__
+from linegraph.derive import derive
+from linegraph.errors import ModelError
+from linegraph.files import write_all
+from linegraph.programs import module_of
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Callable, Iterable
+    from pathlib import Path
+
+    from linegraph.model import Model
+    from linegraph.program import Module
+
+CONVENTIONS = (
+    "Equations: M(q) v' + h(q, v) = Q(u) and q' = N(q) v. M is the mass matrix, h the bias: all that is "
+    "neither acceleration nor input (gravity, Coriolis and centrifugal terms); Q has each input at the "
+    "velocity coordinate of its name.",
+    "SI units, angles in radians. Quaternions are (x, y, z, w) and must have length 1. A free joint has "
+    "q = (position in the parent frame, quaternion) and v = (linear velocity, angular velocity), both in "
+    "the axes of the moving body. Matrices are dense and row-major.",
+    "What linegraph emits belongs to whoever ran it.",
+)
+
+
+def emit(
+    model: Model,
+    out: str | os.PathLike[str] = ".",
+    *,
+    name: str | None = None,
+    languages: Iterable[str] | None = None,
+    folded: bool = False,
+    progress: Callable[[str], None] | None = None,
+) -> list[Path]:
+    """Derive a model and write its functions as source files.
+
+    Args:
+        model: the system.
+        out: the folder, made if need be.
+        name: prefix of functions and files; default the model's name, cleaned to an identifier.
+        languages: some of `codegen.LANGUAGES`; default all.
+        folded: write the parameters' values into the code instead of keeping them symbolic.
+        progress: called with a short text before each stage.
+
+    Returns:
+        The files written. Nothing is written unless everything could be rendered.
+
+    Raises:
+        LinegraphError: the model cannot be derived, a name cannot be emitted, a file not written.
+
+    Example:
+        >>> import tempfile
+        >>> from linegraph import Model
+        >>> model = Model("pendulum")
+        >>> bob = model.body("bob", mass=2.0, mass_center=(0, 0, -0.5))
+        >>> _ = model.revolute("hinge", between=("ground", bob), axis=(0, 1, 0))
+        >>> [path.name for path in emit(model, tempfile.mkdtemp())]
+        ['pendulum.h', 'pendulum.c', 'pendulum.py']
+    """
+    return write_all(
+        out, render(model, name=name, languages=languages, folded=folded, progress=progress)
+    )
+
+
+def render(
+    model: Model,
+    *,
+    name: str | None = None,
+    languages: Iterable[str] | None = None,
+    folded: bool = False,
+    progress: Callable[[str], None] | None = None,
+) -> dict[str, str]:
+    """What `emit` writes, as {file name: text}."""
+    import codegen
+
+    tell = progress or (lambda text: None)
+    chosen = list(dict.fromkeys(languages or codegen.LANGUAGES))
+    for language in chosen:
+        if language not in codegen.LANGUAGES:
+            known = ", ".join(codegen.LANGUAGES)
+            raise ModelError(f'language "{language}"', f"is not known; known: {known}")
+    prefix = codegen.naming.identifier(model.name) if name is None else name
+    tell("deriving")
+    module = module_for(model, prefix, folded=folded)
+    files: dict[str, str] = {}
+    for language in chosen:
+        tell(f"writing {language}")
+        files |= codegen.render(module, language)
+    return files
+
+
+def module_for(model: Model, name: str, *, folded: bool = False) -> Module:
+    """The program of every function of a model: what operation counts are taken from."""
+    about = [f"Equations of motion of {model.name}, derived by linegraph {__version__}."]
+    about += [text for text in (model.about,) if text]
+    return module_of(derive(model), name, folded=folded, about=(*about, *CONVENTIONS))

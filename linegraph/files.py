@@ -1,0 +1,55 @@
+"""Writing a set of files so that either all of them appear or none."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linegraph.errors import LinegraphError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+def write_all(folder: str | os.PathLike[str], files: Mapping[str, str]) -> list[Path]:
+    """Write texts under their names, replacing what stood there, in UTF-8 with LF line ends.
+
+    Everything is first written beside its place under another name and moved there last, so that an
+    interrupted run leaves no half file under a final name.
+
+    Raises:
+        LinegraphError: the folder cannot be made or written to.
+    """
+    target = Path(folder)
+    staged: list[tuple[str, Path]] = []
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+        for name, text in files.items():
+            staged.append((_stage(target, text), target / name))
+        for temporary, final in staged:
+            os.replace(temporary, final)
+    except OSError as error:
+        for temporary, _ in staged:
+            with contextlib.suppress(OSError):
+                os.unlink(temporary)
+        reason = error.strerror or str(error)
+        raise LinegraphError(f"cannot write to {os.fspath(folder)}: {reason}") from None
+    return [final for _, final in staged]
+
+
+def _stage(folder: Path, text: str) -> str:
+    """Write to a new file in the folder, with the permissions of an ordinary one."""
+    handle, temporary = tempfile.mkstemp(prefix=".linegraph-", dir=folder)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as stream:
+            stream.write(text)
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(temporary, 0o666 & ~mask)
+    except OSError:
+        os.unlink(temporary)
+        raise
+    return temporary

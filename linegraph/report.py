@@ -1,0 +1,170 @@
+"""What a model is made of, as text: `linegraph show`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from linegraph.domains import DOMAINS
+from linegraph.expression import Dag
+from linegraph.parameters import Parameter
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from linegraph.derive import Derivation
+    from linegraph.graph import IntegerMatrix
+    from linegraph.kinematics import KinematicTree
+    from linegraph.model import Model
+
+WIDEST_TABLE = 120
+"""A matrix wider than this many characters is written row by row as sums."""
+
+Lines = list[str]
+
+
+def show(derivation: Derivation, heading: Callable[[str], str] = str) -> str:
+    """Bodies, joints, domains, graph, tree, coordinates, cutset and circuit equations of a model.
+
+    Args:
+        derivation: the derived model.
+        heading: how to decorate a heading, e.g. in bold on a terminal.
+    """
+    dag = Dag()
+    tree = derivation.tree(
+        dag, {name: dag.symbol("p", name) for name in derivation.model.parameters}
+    )
+    sections = (
+        (f"model {derivation.model.name}", _summary(derivation, tree)),
+        ("bodies", _bodies(derivation.model)),
+        ("joints", _joints(derivation.model)),
+        ("domains", _domains(derivation)),
+        ("graph: edges tail -> head, the same in translation and rotation", _graph(derivation)),
+        ("tree: links from ground outward", _tree(tree)),
+        ("coordinates", _coordinates(tree)),
+        ("cutset equations [U A] Y = 0: A, branches x chords", _matrix(derivation.topology.cutset)),
+        (
+            "circuit equations [B U] X = 0: B, chords x branches",
+            _matrix(derivation.topology.circuit),
+        ),
+    )
+    return "\n".join(
+        line for title, lines in sections for line in (heading(title), *_indented(lines), "")
+    )
+
+
+def _summary(derivation: Derivation, tree: KinematicTree) -> Lines:
+    graph, model = derivation.topology, derivation.model
+    return [
+        f"{len(model.bodies)} bodies, {len(model.joints)} joints, {len(tree.links)} moving links",
+        f"{len(tree.positions)} coordinates q, {len(tree.velocities)} velocities v, "
+        f"{len(tree.inputs)} inputs u",
+        f"{len(graph.projection.vertices)} vertices, {len(graph.projection.edges)} edges: "
+        f"{len(graph.branches)} branches, {len(graph.chords)} chords (per domain)",
+        f"gravity {_vector(model.gravity)} m/s^2",
+    ]
+
+
+def _bodies(model: Model) -> Lines:
+    rows = [("body", "mass / kg", "mass centre / m", "frames")]
+    for body in model.bodies.values():
+        center = (
+            _vector(body.center) if body.center else f"first moment {_vector(body.first or ())}"
+        )
+        rows.append((body.name, _text(body.mass), center, ", ".join(body.frames) or "-"))
+    return _table(rows)
+
+
+def _joints(model: Model) -> Lines:
+    rows = [("joint", "type", "tail -> head", "axis", "remark")]
+    coupled = {c.joint: c for c in model.couplings}
+    for joint in model.joints:
+        remark = ""
+        if joint.name in coupled:
+            c = coupled[joint.name]
+            remark = f"= {_text(c.ratio)} {c.master} + {_text(c.offset)}"
+        ends = " -> ".join(joint.between)
+        axis = _vector(joint.axis) if joint.freedoms in (1, 3) else "-"
+        rows.append((joint.name, joint.kind, ends, axis, remark))
+    return _table(rows)
+
+
+def _domains(derivation: Derivation) -> Lines:
+    rows = [("domain", "across", "through", "dimension")]
+    for name in derivation.graph.domains:
+        domain = DOMAINS[name]
+        across, through = (f"{x.name} / ({x.symbol})" for x in (domain.across, domain.through))
+        rows.append((name, across, through, str(domain.dimension)))
+    return _table(rows)
+
+
+def _graph(derivation: Derivation) -> Lines:
+    branches = {edge.name for edge in derivation.topology.branches}
+    rows = [("edge", "tail -> head", "")]
+    for edge in derivation.topology.projection.edges:
+        role = "branch" if edge.name in branches else "chord"
+        rows.append((edge.name, f"{edge.tail} -> {edge.head}", role))
+    return _table(rows)
+
+
+def _tree(tree: KinematicTree) -> Lines:
+    depth: list[int] = []
+    lines = ["ground"]
+    for link in tree.links:
+        depth.append(depth[link.parent] + 1 if link.parent >= 0 else 1)
+        turned = "" if link.forward else " (crossed from head to tail)"
+        kind = f"[{link.joint.kind} {link.joint.name}]{turned}"
+        lines.append("  " * depth[-1] + f"{kind} {link.name}")
+    return lines
+
+
+def _coordinates(tree: KinematicTree) -> Lines:
+    lines = []
+    for symbol, quantities in (("q", tree.positions), ("v", tree.velocities)):
+        rows = [
+            (f"{symbol}[{i}]", quantity.name, quantity.unit, quantity.about)
+            for i, quantity in enumerate(quantities)
+        ]
+        lines += _table(rows)
+    lines += _table(
+        [(f"u[{k}]", tree.velocities[i].name, "", "effort") for k, i in enumerate(tree.inputs)]
+    )
+    return lines
+
+
+def _matrix(matrix: IntegerMatrix) -> Lines:
+    table = str(matrix).splitlines()
+    if max(map(len, table)) <= WIDEST_TABLE:
+        return table
+    return [
+        f"{name}: {_sum(matrix, row) or '0'}"
+        for name, row in zip(matrix.rows, matrix.entries, strict=True)
+    ]
+
+
+def _sum(matrix: IntegerMatrix, row: dict[int, int]) -> str:
+    return " ".join(f"{'+' if value > 0 else '-'} {matrix.columns[j]}" for j, value in row.items())
+
+
+def _table(rows: Iterable[tuple[str, ...]]) -> Lines:
+    rows = list(rows)
+    if not rows:
+        return []
+    widths = [max(len(row[j]) for row in rows) for j in range(len(rows[0]))]
+    return [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]
+
+
+def _indented(lines: Lines) -> Lines:
+    return [f"  {line}" for line in lines]
+
+
+def _vector(values: Iterable[Any]) -> str:
+    return "(" + ", ".join(_text(x) for x in values) + ")"
+
+
+def _text(x: Any) -> str:
+    if isinstance(x, Parameter):
+        return x.name
+    return f"{x:.6g}" if isinstance(x, float) else str(x)
