@@ -19,13 +19,10 @@ if TYPE_CHECKING:
     from linegraph.program import Module
 
 CONVENTIONS = (
-    "Equations: M(q) v' + h(q, v) = Q(u) and q' = N(q) v. M is the mass matrix, h the bias: all that is "
-    "neither acceleration nor input (gravity, Coriolis and centrifugal terms); Q has each input at the "
-    "velocity coordinate of its name.",
-    "SI units, angles in radians. Quaternions are (x, y, z, w) and must have length 1. A free joint has "
+    "Angles are in radians. Quaternions are (x, y, z, w) and must have length 1. A free joint has "
     "q = (position in the parent frame, quaternion) and v = (linear velocity, angular velocity), both in "
-    "the axes of the moving body. Matrices are dense and row-major.",
-    "What linegraph emits belongs to whoever ran it.",
+    "the axes of the moving body; a planar joint has q = (x, y, angle) in the parent frame and "
+    "v = (vx, vy, wz) in the axes of the moving body. Each input acts along the velocity of its name.",
 )
 
 
