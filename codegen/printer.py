@@ -1,0 +1,226 @@
+"""The one printer of expressions: a `Program` becomes lines of assignments and texts of results.
+
+Languages of C's family agree on ``+ - * /``, their precedence and left-to-right grouping, so one
+printer serves them all, and the value and order of evaluation are the same in each. Parentheses
+stand exactly where the grouping needs them. What differs between languages is said by a `Notation`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from linegraph.errors import ModelError
+from linegraph.expression import ADD, DIV, FUNCTIONS, MUL, NEG, SUB, SYMBOL, Node
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from linegraph.expression import Number, Operand
+    from linegraph.program import Check, Program
+
+_SIGNED, _SUM, _PRODUCT, _ATOM = range(4)
+"""How tightly a text holds together; one that starts with a sign is never an operand as it is."""
+
+_INFIX = {
+    ADD: (" + ", _SUM, True),
+    SUB: (" - ", _SUM, False),
+    MUL: (" * ", _PRODUCT, True),
+    DIV: (" / ", _PRODUCT, False),
+}
+"""What stands between the operands, how tightly it holds, and whether they may change places."""
+
+
+@dataclass(frozen=True)
+class Notation:
+    """How a language writes what languages write differently.
+
+    Attributes:
+        before: what stands before the name in an assignment, indentation included.
+        after: what ends an assignment.
+        member: what gives access to a parameter, e.g. ``p->``.
+        function: what stands before the name of a function.
+        comment: the line that says a label.
+        check: the lines that stop the function unless the first text is greater than the second.
+    """
+
+    before: str
+    after: str
+    member: str
+    function: str
+    comment: Callable[[str], str]
+    check: Callable[[str, str, Check], list[str]]
+
+
+@dataclass(frozen=True)
+class Body:
+    """A printed program.
+
+    Attributes:
+        lines: comments, assignments and checks in order.
+        results: for each result the texts of its entries.
+        used: the names of the arguments and local arrays that are read.
+    """
+
+    lines: Sequence[str]
+    results: Sequence[Sequence[str]]
+    used: frozenset[str]
+
+
+def number(x: Number) -> str:
+    """A constant as the shortest decimal that reads back as the same double; never an integer.
+
+    Raises:
+        ModelError: it is not a finite double.
+    """
+    try:
+        value = float(x)
+    except OverflowError:
+        value = math.inf
+    if not math.isfinite(value):
+        problem = "a number computed from the model's values is too large, or not a number"
+        raise ModelError("", f"{problem}: scale the values (SI units)")
+    return repr(value)
+
+
+def print_program(program: Program, notation: Notation) -> Body:
+    """All lines of a program in one language."""
+    printer = _Printer(program, notation)
+    lines = printer.assignments(program)
+    results = [[printer.text(x) for x in result.entries] for result in program.results]
+    return Body(lines, results, frozenset(printer.used))
+
+
+class _Printer:
+    """Prints the nodes of one program, in order; `known` holds what stands for a node from then on.
+
+    Methods call each other only for nodes without a name, whose depth `INLINE_LIMIT` bounds.
+    """
+
+    def __init__(self, program: Program, notation: Notation) -> None:
+        self.notation = notation
+        self.turned = program.turned
+        self.known: dict[int, str] = {}
+        self.used: set[str] = set()
+        self.prefixes = {name: f"{notation.function}{name}(" for name in FUNCTIONS}
+
+    def assignments(self, program: Program) -> list[str]:
+        """One line for each step, a comment where the label changes, checks as early as can be."""
+        notation, known = self.notation, self.known
+        before, after = notation.before, notation.after
+        due = _due(program)
+        lines: list[str] = []
+        for check in due.get(-1, ()):
+            lines += self.check(check)
+        label = ""
+        for count, node in enumerate(program.steps):
+            if node.label != label:
+                label = node.label
+                if label:
+                    lines.append(notation.comment(label))
+            lines.append(f"{before}t{count} = {self.expression(node)[0]}{after}")
+            known[node.index] = f"t{count}"
+            if count in due:
+                for check in due[count]:
+                    lines += self.check(check)
+        return lines
+
+    def check(self, check: Check) -> list[str]:
+        """The lines of one check."""
+        return self.notation.check(self.text(check.node), self.text(check.bound), check)
+
+    def text(self, x: Operand) -> str:
+        """An operand as it stands alone."""
+        if not isinstance(x, Node):
+            return number(x)
+        return self.known.get(x.index) or self.expression(x)[0]
+
+    def held(self, x: Operand) -> tuple[str, int]:
+        """The text of an operand, and how tightly it holds together."""
+        if not isinstance(x, Node):
+            return number(x), _ATOM
+        text = self.known.get(x.index)
+        return self.expression(x) if text is None else (text, _ATOM)
+
+    def expression(self, node: Node) -> tuple[str, int]:
+        """The operation itself, even of a named node, and how tightly its text holds together.
+
+        Sums and products change places where that saves parentheses; it does not change a bit.
+        """
+        infix = _INFIX.get(node.op)
+        if infix is None:
+            return self.prefix(node)
+        sign, level, commutes = infix
+        a, b = node.a, node.b
+        if sign == " - " and node.index in self.turned:
+            a, b = b, a
+        left, first = self.held(a)
+        if not isinstance(b, Node):
+            return self.constant(left, first, sign, level, b), level
+        right, second = self.held(b)
+        if commutes and first > level == second:
+            left, first, right, second = right, second, left, first
+        if first < level:
+            left = f"({left})"
+        if second <= level:
+            right = f"({right})"
+        return f"{left}{sign}{right}", level
+
+    def constant(self, left: str, first: int, sign: str, level: int, b: Number) -> str:
+        """An operation whose second operand is a number.
+
+        ``x + -2`` is ``x - 2`` and ``x * 2`` is ``2 * x``, to the last bit.
+        """
+        if first < level:
+            left = f"({left})"
+        if level == _SUM and b < 0:
+            return f"{left}{' - ' if sign == ' + ' else ' + '}{number(-b)}"
+        right = f"({number(b)})" if b < 0 else number(b)
+        return (
+            f"{right}{sign}{left}" if sign == " * " and first != level else f"{left}{sign}{right}"
+        )
+
+    def prefix(self, node: Node) -> tuple[str, int]:
+        """A symbol, a negation or a function."""
+        op, a = node.op, node.a
+        if op == SYMBOL:
+            return self.symbol(node), _ATOM
+        if op != NEG:
+            return f"{self.prefixes[op]}{self.text(a)})", _ATOM
+        if a.index in self.turned:
+            known = self.known.get(a.index)
+            return self.expression(a) if known is None else (known, _ATOM)
+        text, own = self.held(a)
+        return f"-({text})" if own < _PRODUCT or text[0] == "-" else f"-{text}", _SIGNED
+
+    def symbol(self, node: Node) -> str:
+        """What is read: an element of an array, a parameter, or the time."""
+        argument, place = str(node.a), node.b
+        self.used.add(argument)
+        if place is None:
+            text = argument
+        elif isinstance(place, int):
+            text = f"{argument}[{place}]"
+        else:
+            text = f"{self.notation.member}{place}"
+        self.known[node.index] = text
+        return text
+
+
+def _due(program: Program) -> dict[int, list[Check]]:
+    """The checks by the step after which all they need is known; -1 is before the first."""
+    if not program.checks:
+        return {}
+    order = {node.index: place for place, node in enumerate(program.steps)}
+
+    def known_after(x: Operand) -> int:
+        if not isinstance(x, Node) or x.op == SYMBOL:
+            return -1
+        place = order.get(x.index)
+        return max(known_after(x.a), known_after(x.b)) if place is None else place
+
+    due: dict[int, list[Check]] = {}
+    for check in program.checks:
+        due.setdefault(max(known_after(check.node), known_after(check.bound)), []).append(check)
+    return due

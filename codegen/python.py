@@ -1,0 +1,176 @@
+"""Python: ``NAME.py``, one module that needs NumPy alone and computes one state or many at once.
+
+Each function is emitted as two: a public one that deals with shapes and a private one of plain
+assignments. The components of a single state are Python floats there, which are several times
+faster than NumPy's scalars; those of many states are arrays. The assignments are the same for both.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from codegen import layout, prose, templates
+from codegen.printer import Notation, number, print_program
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from linegraph.program import Argument, Check, Module, Program, Quantity, Result
+
+_WIDTH = 96
+
+
+def render(module: Module) -> dict[str, str]:
+    """The one file of a module."""
+    statuses = layout.statuses(module)
+    text = templates.fill(
+        "python/module.py.jinja",
+        name=module.name,
+        head=_indented(layout.head(module), 0),
+        counts=list(layout.counts(module).items()),
+        names=[
+            (symbol, [f"{literal(x.name)}," for x in listed])
+            for symbol, _, listed in layout.quantities(module)[:3]
+        ],
+        parameters=[x.name for x in module.parameters],
+        defaults=[f"{x.name}={number(layout.default(x))}" for x in module.parameters],
+        remarks=[line for x in module.parameters for line in _remark(x)],
+        functions=[
+            {
+                "name": program.name,
+                "arguments": ", ".join(argument.name for argument in program.arguments),
+                "document": _document(module, program, statuses[program.name]),
+                "wrapper": _wrapper(module, program),
+                "body": _body(program),
+            }
+            for program in module.programs
+        ],
+    )
+    return {f"{module.name}.py": text}
+
+
+def literal(text: str) -> str:
+    """A string literal of exactly this text, in double quotes where that needs no more escapes."""
+    quoted = ascii(text)
+    inside = quoted[1:-1]
+    return quoted if '"' in inside or "\\'" in inside else f'"{inside}"'
+
+
+def _escape(line: str) -> str:
+    """A line of printable ASCII within a docstring, which it cannot end."""
+    return line.replace("\\", "\\\\").replace('"""', '\\"\\"\\"')
+
+
+def _indented(lines: Iterable[str], indent: int) -> list[str]:
+    return [f"{' ' * indent}{_escape(line)}".rstrip() for line in lines]
+
+
+def _remark(quantity: Quantity) -> list[str]:
+    unit = f" ({quantity.unit})" if quantity.unit else ""
+    return _indented(prose.paragraph(f"{quantity.name}{unit}: {quantity.about}", 4), 8)
+
+
+def _document(module: Module, program: Program, statuses: dict[int, str]) -> list[str]:
+    """The lines of a docstring, quotes excluded."""
+    about = prose.paragraph(program.about) or [f"Compute {program.name}."]
+    lines = [*about, "", "Args:"]
+    for argument in program.arguments:
+        shape = ""
+        if argument.size is not None:
+            shape = _leading([layout.extent(module, argument.name, argument.size)])
+        lines += _item(f"{argument.name}: {argument.about}{shape}")
+    lines += ["", "Returns:"]
+    for result in program.results:
+        shape = _leading(layout.shape(module, result))
+        lines += _item(f"{result.name}: {result.about}{shape}")
+    if program.arguments:
+        lines += ["", "Raises:", *_item("ValueError: an argument has a wrong shape.")]
+    for about_ in dict.fromkeys(statuses.values()):
+        lines += _item(f"numpy.linalg.LinAlgError: {about_}")
+    return _indented(lines, 4)
+
+
+def _leading(extents: Sequence[str]) -> str:
+    return f", shape (..., {', '.join(extents)})"
+
+
+def _item(text: str) -> list[str]:
+    return [f"    {line}" for line in prose.paragraph(text, 4)]
+
+
+def _wrapper(module: Module, program: Program) -> list[str]:
+    """The lines of a public function, below its docstring."""
+    lines, leads = [], []
+    for argument in program.arguments:
+        lead, line = _read(module, argument)
+        lines.append(line)
+        leads.append(lead)
+    results = ", ".join(result.name for result in program.results)
+    arguments = ", ".join(argument.name for argument in program.arguments)
+    joined = ", ".join(_join(module, result) for result in program.results)
+    return [
+        *lines,
+        f"    lead = _lead({', '.join(leads)})",
+        f"    {results} = _{program.name}({arguments})",
+        f"    return {joined}",
+    ]
+
+
+def _read(module: Module, argument: Argument) -> tuple[str, str]:
+    """The name of an argument's leading shape and the line that finds it and the components."""
+    name, lead = argument.name, f"{argument.name}_lead"
+    if argument.size is not None:
+        size = layout.extent(module, name, argument.size)
+        return lead, f'    {lead}, {name} = _split("{name}", {name}, {size})'
+    if name == "p":
+        return lead, f"    {lead} = _check_parameters(p)"
+    return lead, f"    {lead}, {name} = _number({name})"
+
+
+def _join(module: Module, result: Result) -> str:
+    extents = layout.shape(module, result)
+    return f"_join({result.name}, lead, ({', '.join(extents)}{',' * (len(extents) == 1)}))"
+
+
+def _body(program: Program) -> list[str]:
+    """The lines of a private function: arguments and results are lists of components."""
+    lines = []
+    for call in program.calls:
+        results = ", ".join(result.name for result in call.results)
+        lines.append(f"    {results} = _{call.program}({', '.join(call.arguments)})")
+    body = print_program(program, _NOTATION)
+    lines += body.lines
+    for result, entries in zip(program.results, body.results, strict=True):
+        lines += [f"    {result.name} = [", *_filled(entries), "    ]"]
+    lines.append(f"    return {', '.join(result.name for result in program.results)}")
+    return lines
+
+
+def _filled(entries: Sequence[str]) -> list[str]:
+    """The entries of a list, as many on a line as fit."""
+    lines = []
+    line = "       "
+    for entry in entries:
+        if len(line) + len(entry) > _WIDTH and line != "       ":
+            lines.append(line)
+            line = "       "
+        line = f"{line} {entry},"
+    return [*lines, line] if entries else lines
+
+
+def _check(value: str, bound: str, check: Check) -> list[str]:
+    return [
+        f"    if not _holds({value} > {bound}):",
+        f"        raise np.linalg.LinAlgError({literal(prose.plain(check.about))})",
+    ]
+
+
+_NOTATION = Notation(
+    before="    ",
+    after="",
+    member="p.",
+    function="_",
+    comment=lambda label: f"    # -- {prose.plain(label)}",
+    check=_check,
+)
+"""The dashes keep a label from being read as an instruction to a tool, such as ``type: ignore``."""

@@ -1,0 +1,78 @@
+"""Words that emitted code cannot have as names, as a language or a library has them already."""
+
+from __future__ import annotations
+
+import re
+
+
+def _words(*texts: str) -> frozenset[str]:
+    return frozenset(word for text in texts for word in text.split())
+
+
+_C = """
+    auto break case char const continue default do double else enum extern float for goto if
+    inline int long register restrict return short signed sizeof static struct switch typedef
+    union unsigned void volatile while alignas alignof bool constexpr false nullptr
+    static_assert thread_local true typeof typeof_unqual asm fortran
+"""
+_CPP = """
+    and and_eq atomic_cancel atomic_commit atomic_noexcept bitand bitor catch char16_t char32_t
+    char8_t class co_await co_return co_yield compl concept const_cast consteval constinit
+    decltype delete dynamic_cast explicit export friend mutable namespace new noexcept not
+    not_eq operator or or_eq private protected public reflexpr reinterpret_cast requires
+    static_cast synchronized template this throw try typeid typename using virtual wchar_t xor
+    xor_eq
+"""
+_PYTHON = """
+    False None True as assert async await def del elif except finally from global import in is
+    lambda nonlocal pass raise with yield
+"""
+KEYWORDS = _words(_C, _CPP, _PYTHON)
+"""What C, C++ and Python keep for themselves."""
+
+_MACROS = """
+    alloca BIG_ENDIAN BYTE_ORDER DOMAIN fpclassify i386 INFINITY iscanonical iseqsig isfinite
+    isgreater isgreaterequal isinf isless islessequal islessgreater isnan isnormal issignaling
+    issubnormal isunordered iszero linux LITTLE_ENDIAN math_errhandling MAXFLOAT NAN NFDBITS
+    NULL OVERFLOW PDP_ENDIAN PLOSS RAND_MAX signbit SING TLOSS UNDERFLOW unix
+"""
+MACROS = _words(_MACROS)
+"""What the compiler or <math.h>, with all that it includes, replaces on some platform."""
+
+MACRO_FAMILIES = re.compile(
+    r"(FP_|HUGE_VAL|MATH_ERR|SNAN|FD_|EXIT_|MB_CUR_|W[A-Z]+$|[bl]e(16|32|64)toh$|hto[bl]e(16|32|64)$"
+    r"|M_(1_PI|2_PI|2_SQRTPI|E|LN2|LN10|LOG2E|LOG10E|PI|PI_2|PI_4|SQRT2|SQRT1_2)(f|l|f\d+x?)?$)"
+)
+"""More of them, by how they begin."""
+
+_HEADERS = """
+    assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal
+    stdalign stdarg stdatomic stdbool stddef stdint stdio stdlib stdnoreturn string tgmath
+    threads time uchar wchar wctype
+"""
+_MODULES = """
+    abc ast bisect builtins codecs collections concurrent contextlib contextvars copy copyreg
+    csv ctypes datetime dis enum fnmatch fractions functools gc genericpath glob hashlib hmac
+    importlib inspect io itertools json keyword linecache logging mmap ntpath numbers numpy
+    opcode operator os pathlib pickle platform posixpath pprint queue random re reprlib secrets
+    selectors shutil site socket stat struct subprocess sys sysconfig tempfile textwrap
+    threading token tokenize traceback types typing unicodedata unittest urllib uuid warnings
+    weakref zipfile zipimport
+"""
+FILES = _words(_HEADERS, _MODULES)
+"""Headers of C and modules that NumPy imports: a file of that name would be taken for them."""
+
+CLASS = _words("replace self")
+"""What the emitted Python class `Parameters` has for its own use."""
+
+_OWN = """
+    all any bool check DEFAULT_PARAMETERS default_parameters enumerate float H isinstance join
+    lead len list main np NQ NU number NV object Parameters parameters Q_NAMES q_names shape
+    split status type U_NAMES u_names V_NAMES v_names
+"""
+_MATH = """
+    acos asin atan atan2 ceil cos cosh erf erfc exp fabs floor fmod frexp gamma hypot j0 j1 jn
+    ldexp lgamma log log10 modf pow signgam sin sinh sqrt tanh tgamma y0 y1 yn
+"""
+CODE = _words(_OWN, _MATH)
+"""What the emitted files define or use themselves, and functions of <math.h>."""
