@@ -99,6 +99,8 @@ def _document(module: Module, program: Program, statuses: dict[int, str]) -> lis
     if statuses:
         failures = "; ".join(f"{status}: {about}" for status, about in sorted(statuses.items()))
         lines += prose.paragraph(f"@return 0, or with all outputs untouched {failures}", 4)
+    elif program.status:
+        lines += prose.paragraph("@return 0: it cannot fail")
     return _block(lines)
 
 
@@ -108,7 +110,8 @@ def _signature(module: Module, program: Program, statuses: dict[str, dict[int, s
     for result in program.results:
         size = " * ".join(layout.extent(module, result.name, n, prefix) for n in result.shape)
         parts.append(f"double {result.name}[{size if result.entries else 1}]")
-    head = f"{'int' if statuses[program.name] else 'void'} {module.name}_{program.name}("
+    returned = "int" if program.status or statuses[program.name] else "void"
+    head = f"{returned} {module.name}_{program.name}("
     line = f"{head}{', '.join(parts)})"
     return line if len(line) < _WIDTH else head + f",\n{' ' * len(head)}".join(parts) + ")"
 
@@ -140,7 +143,7 @@ def _body(module: Module, program: Program, statuses: dict[str, dict[int, str]])
     lines += body.lines
     for result, entries in zip(program.results, body.results, strict=True):
         lines += [f"    {result.name}[{i}] = {entry};" for i, entry in enumerate(entries)]
-    if statuses[program.name]:
+    if program.status or statuses[program.name]:
         lines.append("    return 0;")
     return lines
 

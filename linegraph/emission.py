@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.version import __version__
 from linegraph.derive import derive
 from linegraph.errors import ModelError
 from linegraph.files import write_all
 from linegraph.programs import module_of
+from linegraph.version import __version__
 
 if TYPE_CHECKING:
     import os

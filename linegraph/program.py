@@ -72,6 +72,7 @@ class Program:
 
     Attributes:
         steps: the nodes that get a name of their own, in an order in which each follows its operands.
+        status: whether it returns a status in languages without exceptions, even if no check can fail.
         turned: indices of differences a - b that are computed as b - a, since only their negative is used.
     """
 
@@ -83,6 +84,7 @@ class Program:
     turned: frozenset[int] = frozenset()
     checks: tuple[Check, ...] = ()
     calls: tuple[Call, ...] = ()
+    status: bool = False
 
     @property
     def operations(self) -> int:
@@ -118,6 +120,8 @@ def assemble(
     results: tuple[Result, ...],
     checks: tuple[Check, ...] = (),
     calls: tuple[Call, ...] = (),
+    *,
+    status: bool = False,
 ) -> Program:
     """Keep what the results need, put it in order and decide which nodes get a name.
 
@@ -131,7 +135,7 @@ def assemble(
         if node.op == SUB and uses[node.index] == negated.get(node.index, 0)
     )
     steps = _named(live, uses, {check.node.index for check in checks})
-    return Program(name, about, arguments, steps, results, turned, checks, calls)
+    return Program(name, about, arguments, steps, results, turned, checks, calls, status)
 
 
 def _roots(results: tuple[Result, ...], checks: tuple[Check, ...]) -> list[Node]:

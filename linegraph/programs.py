@@ -200,7 +200,8 @@ def _solved(
     accelerations = tuple(solution.unknowns)
     result = Result("a", (len(accelerations),), accelerations, ARGUMENTS["a"])
     about = "Forward dynamics a = M(q)^-1 (Q(u) - h(q, v))."
-    return assemble("forward_dynamics", about, f.arguments("q", "v", "u"), (result,), checks, calls)
+    given = f.arguments("q", "v", "u")
+    return assemble("forward_dynamics", about, given, (result,), checks, calls, status=True)
 
 
 def _coordinate_rates(f: _Functions) -> Program:

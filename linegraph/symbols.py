@@ -108,9 +108,7 @@ def simplified(expression: Expr) -> Expr:
 
 def _whole(expression: Expr) -> Expr:
     """Floats with integer values as integers: 2.0 x is 2 x to a reader."""
-    return expression.replace(
-        lambda e: e.is_Float and e == int(e), lambda e: sympy.Integer(int(e))
-    )
+    return expression.replace(lambda e: e.is_Float and e == int(e), lambda e: sympy.Integer(int(e)))
 
 
 def evaluate(expression: Expr, algebra: Algebra, parameters: Mapping[str, Scalar]) -> Scalar:
