@@ -100,6 +100,10 @@ class Dag:
         self.label = ""
         self._known: dict[object, Node] = {}
 
+    def release(self) -> None:
+        """Forget the nodes: those no result needs are freed. Operations repeated later are new nodes."""
+        self._known.clear()
+
     def symbol(self, argument: str, place: int | str | None = None) -> Node:
         """The input at `place` of `argument`; asking again gives the same node."""
         return self._node(SYMBOL, argument, place)

@@ -37,6 +37,8 @@ def module_of(derivation: Derivation, name: str, *, folded: bool, about: Iterabl
     """
     parameters = _parameters(derivation)
     functions = _Functions(derivation, folded or not parameters)
+    programs = tuple(make(functions) for make in PROGRAMS)
+    functions.dag.release()
     tree = functions.tree
     return Module(
         name=name,
@@ -46,7 +48,7 @@ def module_of(derivation: Derivation, name: str, *, folded: bool, about: Iterabl
         inputs=_inputs(tree),
         parameters=() if folded else parameters,
         time=False,
-        programs=tuple(make(functions) for make in PROGRAMS),
+        programs=programs,
     )
 
 
