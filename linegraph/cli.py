@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import click
 
 from linegraph.errors import LinegraphError
+from linegraph.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -73,7 +74,7 @@ def _about_model(command: Callable[..., None]) -> Callable[..., None]:
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
-@click.version_option(package_name="linegraph-dynamics", prog_name="linegraph")
+@click.version_option(__version__, prog_name="linegraph", message="%(prog)s %(version)s")
 def main() -> None:
     """Equations of motion from linear (terminal) graphs, emitted as C and Python.
 

@@ -45,7 +45,7 @@ def module_of(derivation: Derivation, name: str, *, folded: bool, about: Iterabl
         about=tuple(about),
         positions=tree.positions,
         velocities=tree.velocities,
-        inputs=_inputs(tree),
+        inputs=inputs_of(tree),
         parameters=() if folded else parameters,
         time=False,
         programs=programs,
@@ -243,7 +243,7 @@ def _outward(tree: KinematicTree) -> list[int]:
     return list(order)
 
 
-def _inputs(tree: KinematicTree) -> tuple[Quantity, ...]:
+def inputs_of(tree: KinematicTree) -> tuple[Quantity, ...]:
     """The efforts: one along each actuated velocity, of its name."""
     quantities = []
     for index in tree.inputs:

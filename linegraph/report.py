@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from linegraph.domains import DOMAINS
 from linegraph.expression import Dag
 from linegraph.parameters import Parameter
+from linegraph.programs import inputs_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -118,17 +119,12 @@ def _tree(tree: KinematicTree) -> Lines:
 
 
 def _coordinates(tree: KinematicTree) -> Lines:
-    lines = []
-    for symbol, quantities in (("q", tree.positions), ("v", tree.velocities)):
-        rows = [
-            (f"{symbol}[{i}]", quantity.name, quantity.unit, quantity.about)
-            for i, quantity in enumerate(quantities)
-        ]
-        lines += _table(rows)
-    lines += _table(
-        [(f"u[{k}]", tree.velocities[i].name, "", "effort") for k, i in enumerate(tree.inputs)]
+    listed = {"q": tree.positions, "v": tree.velocities, "u": inputs_of(tree)}
+    return _table(
+        (f"{symbol}[{i}]", quantity.name, quantity.unit, quantity.about)
+        for symbol, quantities in listed.items()
+        for i, quantity in enumerate(quantities)
     )
-    return lines
 
 
 def _matrix(matrix: IntegerMatrix) -> Lines:
