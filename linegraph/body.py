@@ -117,11 +117,16 @@ def unit(axis: Sequence[Any], who: str) -> Vector:
         ModelError: three zeros.
     """
     x, y, z = axis
-    if not all(is_number(c) for c in (x, y, z)):
-        return (x, y, z)
-    length = (x * x + y * y + z * z) ** 0.5
+    length: Any = (x * x + y * y + z * z) ** 0.5 if all(map(is_number, axis)) else _length(axis)
     if length == 0:
         raise ModelError(who, "the axis has length zero; give a direction such as (0, 0, 1)")
     if length == 1:
         return (x, y, z)
     return (x / length, y / length, z / length)
+
+
+def _length(axis: Sequence[Any]) -> Any:
+    """The length of a vector with symbolic components."""
+    import sympy
+
+    return sympy.sqrt(sum(sympy.sympify(c) ** 2 for c in axis))

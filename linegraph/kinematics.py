@@ -299,7 +299,7 @@ class _Walk:
         if joint.freedoms == 0:
             self._enter(body, parent, self._compose(near, inverse(far)))
             return
-        alignment = Placement(ZERO, joint.alignment())
+        alignment = self._constant(Placement(ZERO, joint.alignment()))
         near = self._compose(near, alignment)
         positions, velocities = self._state.places(joint)
         link = Link(

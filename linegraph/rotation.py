@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Protocol
 
 from linegraph.vector import Matrix, Scalar, Vector, times, transpose
@@ -223,11 +224,9 @@ def product(a: Matrix, b: Matrix) -> Matrix:
     return transpose((x, y, z))
 
 
-def from_rpy(roll: float, pitch: float, yaw: float) -> Matrix:
+def from_rpy(roll: Scalar, pitch: Scalar, yaw: Scalar) -> Matrix:
     """``Rz(yaw) Ry(pitch) Rx(roll)``: turns about fixed x, y, z in this order, in radians."""
-    cr, sr = math.cos(roll), math.sin(roll)
-    cp, sp = math.cos(pitch), math.sin(pitch)
-    cy, sy = math.cos(yaw), math.sin(yaw)
+    (cr, sr), (cp, sp), (cy, sy) = (_cos_sin(angle) for angle in (roll, pitch, yaw))
     return (
         (cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
         (sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
@@ -235,9 +234,9 @@ def from_rpy(roll: float, pitch: float, yaw: float) -> Matrix:
     )
 
 
-def about(axis: Vector, angle: float) -> Matrix:
+def about(axis: Vector, angle: Scalar) -> Matrix:
     """Rotation by `angle` (rad) about a unit vector: Rodrigues' formula."""
-    c, s = math.cos(angle), math.sin(angle)
+    c, s = _cos_sin(angle)
     x, y, z = axis
     k = 1 - c
     return (
@@ -245,6 +244,15 @@ def about(axis: Vector, angle: float) -> Matrix:
         (k * x * y + s * z, c + k * y * y, k * y * z - s * x),
         (k * x * z - s * y, k * y * z + s * x, c + k * z * z),
     )
+
+
+def _cos_sin(angle: Scalar) -> tuple[Scalar, Scalar]:
+    """Of a number by the standard library, of a symbol by sympy."""
+    if isinstance(angle, (int, float, Fraction)):
+        return math.cos(angle), math.sin(angle)
+    import sympy
+
+    return sympy.cos(angle), sympy.sin(angle)
 
 
 def z_onto(axis: Vector) -> Matrix:
