@@ -99,6 +99,7 @@ class Bridge:
         mimics: Mapping[str, Follower],
         held: Mapping[str, float] | None = None,
     ) -> None:
+        """Derive linegraph's equations and note the names of its coordinates."""
         self.pin = pinocchio_model
         self.data = pinocchio_model.createData()
         self.weightless = pinocchio_model.copy()
@@ -188,7 +189,7 @@ class Bridge:
         return np.asarray(G.T @ tau)
 
     def bias(self, q: Array, v: Array) -> Array:
-        """h by Pinocchio, on linegraph's coordinates."""
+        """Bias h by Pinocchio, on linegraph's coordinates."""
         return self.inverse_dynamics(q, v, np.zeros(self.nv))
 
     def mass_matrix(self, q: Array) -> Array:

@@ -63,7 +63,9 @@ def test_help_imports_nothing_heavy() -> None:
         "heavy = {'sympy', 'numpy', 'networkx', 'jinja2', 'lxml'} & set(sys.modules)\n"
         "sys.exit(f'imported: {heavy}' if heavy else 0)"
     )
-    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=ROOT, capture_output=True, check=False
+    )
     assert done.returncode == 0, done.stderr
 
 
@@ -124,7 +126,16 @@ def test_emit_overwrites_and_leaves_other_files_alone(tmp_path: Path) -> None:
 def test_show_prints_every_section() -> None:
     done = linegraph("show", PANDA)
     assert done.returncode == 0
-    for heading in ("bodies", "joints", "domains", "graph", "tree", "coordinates", "cutset", "circuit"):
+    for heading in (
+        "bodies",
+        "joints",
+        "domains",
+        "graph",
+        "tree",
+        "coordinates",
+        "cutset",
+        "circuit",
+    ):
         assert f"\n{heading}" in done.stdout
     assert "panda_finger_joint2" in done.stdout
     assert "= 1 panda_finger_joint1 + 0" in done.stdout
@@ -139,11 +150,11 @@ def test_a_missing_file(tmp_path: Path) -> None:
 
 def test_a_broken_file_is_named_with_its_line_and_nothing_is_written(tmp_path: Path) -> None:
     broken = tmp_path / "broken.urdf"
-    broken.write_text(PANDA.read_text().replace('<mass value="0.629769"/>', '<mass value="heavy"/>'))
-    done = linegraph("emit", broken, "--out", tmp_path / "out")
-    line = next(
-        i for i, text in enumerate(broken.read_text().splitlines(), 1) if "heavy" in text
+    broken.write_text(
+        PANDA.read_text().replace('<mass value="0.629769"/>', '<mass value="heavy"/>')
     )
+    done = linegraph("emit", broken, "--out", tmp_path / "out")
+    line = next(i for i, text in enumerate(broken.read_text().splitlines(), 1) if "heavy" in text)
     refused(done, f"broken.urdf:{line}:", "heavy")
     assert done.stderr.startswith("error: ")
     assert not (tmp_path / "out").exists()

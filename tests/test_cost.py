@@ -26,7 +26,9 @@ def chain(links: int) -> Model:
     before = model.ground
     for i in range(links):
         tip = before.frame("tip", at=(0.1, 0.0, 0.5), rpy=(0.3, 0.2, 0.1))
-        before = model.body(f"b{i}", mass=1.0, mass_center=(0.1, 0.2, 0.3), inertia=(0.1, 0.2, 0.25))
+        before = model.body(
+            f"b{i}", mass=1.0, mass_center=(0.1, 0.2, 0.3), inertia=(0.1, 0.2, 0.25)
+        )
         axis = ((0, 0, 1), (1, 0, 0), (0, 1, 0))[i % 3]
         model.revolute(f"j{i}", between=(tip, before), axis=axis)
     return model

@@ -95,7 +95,14 @@ def test_sanitizers_find_nothing(
     (tmp_path / "harness.c").write_text(harness)
     program = tmp_path / "harness"
     command = ["gcc", "-std=c99", "-O1", "-g", "-fsanitize=address,undefined,float-cast-overflow"]
-    command += ["-fno-sanitize-recover=all", "-Wall", "-Wextra", "-Werror", "harness.c", f"{name}.c"]
+    command += [
+        "-fno-sanitize-recover=all",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "harness.c",
+        f"{name}.c",
+    ]
     subprocess.run([*command, "-lm", "-o", str(program)], cwd=tmp_path, check=True)
     done = subprocess.run([str(program)], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 TREES, STATES, BATCH = 300, 20, 10
-TOLERANCE = 1e-10  # relative to 1 + the largest expected entry; measured 3e-12, forward dynamics 4e-11
+TOLERANCE = (
+    1e-10  # relative to 1 + the largest expected entry; measured 3e-12, forward dynamics 4e-11
+)
 
 
 def draw(seed: int) -> tuple[trees.Tree, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

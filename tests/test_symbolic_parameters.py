@@ -100,8 +100,8 @@ def test_symbols_give_what_numbers_give(seed: int, tmp_path: Path) -> None:
 
 def test_changed_parameters_change_the_equations(tmp_path: Path) -> None:
     model = lg.Model("pendulum")
-    m, l = model.parameter("m", 2.0), model.parameter("l", 0.5)
-    bob = model.body("bob", mass=m, mass_center=(0, 0, -l))
+    mass, length = model.parameter("m", 2.0), model.parameter("l", 0.5)
+    bob = model.body("bob", mass=mass, mass_center=(0, 0, -length))
     model.revolute("hinge", between=("ground", bob), axis=(0, 1, 0))
     module = load(render(model, languages=["python"]), "pendulum", tmp_path)
     p = module.DEFAULT_PARAMETERS.replace(m=[1.0, 3.0], l=2.0)

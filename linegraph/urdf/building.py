@@ -1,20 +1,20 @@
-"""From a tree of links and joints to a `Model`; its numbers folded or kept as parameters."""
+"""From a tree of links and joints to a `Model`, its numbers folded or kept as parameters."""
 
 from __future__ import annotations
 
-import re
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.joints import JOINTS, Moments
 from linegraph.kinematics import carried
-from linegraph.model import Model
+from linegraph.model import BodyHandle, Model
 from linegraph.rotation import Rotation
-from linegraph.urdf.mimics import followers_of
+from linegraph.urdf.mimics import Followers, followers_of
 from linegraph.urdf.report import Report, named
-from linegraph.vector import ZERO, Vector
+from linegraph.urdf.stems import MOMENTS, OFFSETS, stems
+from linegraph.vector import ZERO
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping
+    from collections.abc import Mapping, Sequence
 
     from linegraph.urdf.joints import Joint
     from linegraph.urdf.links import Inertial, Link
@@ -22,83 +22,153 @@ if TYPE_CHECKING:
 
 ROOT = "root"
 """The free joint above the root link of a floating robot."""
-_LONGEST = 100
-_MOMENT_PREFIXES = ("m", "mx", "my", "mz", "Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz")
-_OFFSET_PREFIXES = ("x", "y", "z")
+
+_AXES = ("xx", "xy", "xz", "yy", "yz", "zz")
 
 
-def build(
-    name: str, tree: Tree, report: Report, *, floating: bool, symbolic: bool, snap: float
-) -> Model:
+class Options(NamedTuple):
+    """How a robot becomes a model.
+
+    Attributes:
+        floating: a free joint above the root link instead of a weld to ground.
+        symbolic: masses, moments and offsets of joints are parameters instead of numbers.
+        snap: as of `Model`.
+    """
+
+    floating: bool
+    symbolic: bool
+    snap: float
+
+
+def build(name: str, tree: Tree, options: Options, report: Report) -> Model:
     """Build the model: bodies and joints in the order of the walk.
 
     Raises:
-        SourceError: what the builder refuses, with the line of the element.
+        SourceError: a ``<mimic>`` is impossible, or the builder refuses something.
     """
-    model = Model(name, snap=snap)
-    names = _Names(tree) if symbolic else None
-    _add_link(model, tree.root, names, report)
-    _add_base(model, tree, report, floating=floating)
+    followers = followers_of(tree.walk, report)
+    model = Model(name, snap=options.snap)
+    add = _Symbolic(model, tree) if options.symbolic else _Folded(model)
+    with report.placed(tree.root.line, named("link", tree.root.name)):
+        add.link(tree.root)
+    _add_base(model, tree, options, report)
     for joint in tree.walk:
-        _add_link(model, tree.links[joint.child], names, report)
-        _add_joint(model, joint, names, report)
-    _add_followers(model, tree, report)
+        link = tree.links[joint.child]
+        with report.placed(link.line, named("link", link.name)):
+            add.link(link)
+        with report.placed(joint.line, named("joint", joint.name)):
+            _add_joint(model, joint, add.offset(joint))
+    _add_followers(model, tree, followers, report)
+    _mention_dampers(tree, report)
     return model
 
 
-def _add_base(model: Model, tree: Tree, report: Report, *, floating: bool) -> None:
-    """Connect the root link to ground, before any other joint so that its v comes first."""
+def _add_base(model: Model, tree: Tree, options: Options, report: Report) -> None:
+    """Connect the root link to ground, before all other joints so that its v comes first."""
     joints = {joint.name: joint for joint in tree.walk}
-    if floating:
+    if options.floating:
         if ROOT in joints:
             problem = f'the joint above a floating robot is called "{ROOT}"; rename this one'
             raise report.error(joints[ROOT].line, named("joint", ROOT), problem)
         model.free(ROOT, (model.ground, tree.root.name))
         return
-    # The weld has no coordinate, so its name appears nowhere in emitted code; it only must be unlike
-    # the name of every joint. A file may call a joint anything, hence the search.
+    # A weld has no coordinate, so that emitted code does not show its name; it only has to differ from
+    # every joint's. A file may call a joint anything, hence the search.
     weld = "ground/base"
     while weld in joints:
-        weld += "_"
+        weld += "'"
     model.fixed(weld, (model.ground, tree.root.name))
 
 
-def _add_link(model: Model, link: Link, names: _Names | None, report: Report) -> None:
-    with report.placed(link.line, named("link", link.name)):
+def _add_joint(model: Model, joint: Joint, at: Sequence[Any]) -> None:
+    """Put a frame of the joint's name on the parent; the head is the child link itself."""
+    tail = BodyHandle(model, joint.parent).frame(joint.name, at, joint.rpy)
+    model.add_joint(JOINTS[joint.kind](joint.name, (tail, joint.child), joint.axis))
+
+
+def _add_followers(model: Model, tree: Tree, followers: Followers, report: Report) -> None:
+    for joint in tree.walk:
+        with report.placed(joint.line, named("joint", joint.name)):
+            if joint.name in followers.still:
+                model.lock(joint.name, followers.still[joint.name])
+            elif joint.name in followers.moving:
+                mimic = followers.moving[joint.name]
+                model.couple(joint.name, mimic.master, mimic.multiplier, mimic.offset)
+
+
+def _mention_dampers(tree: Tree, report: Report) -> None:
+    damped = sorted((joint for joint in tree.walk if joint.damped), key=lambda joint: joint.line)
+    if damped:
+        count = "it" if len(damped) == 1 else f"it and {len(damped) - 1} more"
+        text = f"damping and friction ({count}) are not part of the equations"
+        report.warn(damped[0].line, named("joint", damped[0].name), text)
+
+
+class _Folded:
+    """Adds links and gives offsets as the file's numbers."""
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+
+    def link(self, link: Link) -> None:
+        """Add a body with its mass centre and central inertia."""
         if link.inertial is None:
-            model.body(link.name)
-        elif names is None:
-            given = link.inertial
-            tensor = dict(zip(("xx", "xy", "xz", "yy", "yz", "zz"), given.tensor, strict=True))
-            model.body(link.name, mass=given.mass, mass_center=given.center, inertia=tensor)
-        else:
-            _add_parametric(model, link, link.inertial, names.of_links[link.name])
+            self._model.body(link.name)
+            return
+        given = link.inertial
+        inertia = dict(zip(_AXES, given.tensor, strict=True))
+        self._model.body(link.name, mass=given.mass, mass_center=given.center, inertia=inertia)
+
+    def offset(self, joint: Joint) -> Sequence[Any]:
+        """The joint's position in the parent link (m)."""
+        return joint.at
 
 
-def _add_parametric(model: Model, link: Link, inertial: Inertial, stem: str) -> None:
-    """A body whose ten moments, about its own origin, are parameters: M and h are linear in them."""
-    moments = moments_of(inertial)
-    who = named("link", link.name)
-    mass = model.parameter(f"m_{stem}", moments.mass, "kg", f"mass of {who}")
-    first = [
-        model.parameter(f"m{c}_{stem}", value, "kg m", f"first moment of mass of {who}, {c}")
-        for c, value in zip("xyz", moments.first, strict=True)
-    ]
-    about = f"of {who} about its origin"
-    tensor = {
-        entry: model.parameter(f"I{entry}_{stem}", value, "kg m^2", f"inertia {entry} {about}")
-        for entry, value in zip(("xx", "xy", "xz", "yy", "yz", "zz"), moments.inertia, strict=True)
-    }
-    model.body(link.name, mass=mass, first_moment=first, inertia=tensor)
+class _Symbolic:
+    """Adds links and gives offsets as parameters with the file's numbers as values.
+
+    A link's ten moments are about its own origin: M and h are linear in them.
+    """
+
+    def __init__(self, model: Model, tree: Tree) -> None:
+        self._model = model
+        # a coordinate and a parameter of one name would be one symbol
+        taken = {joint.name for joint in tree.walk}
+        self._links: Mapping[str, str] = stems(tree.links, MOMENTS, taken)
+        self._joints: Mapping[str, str] = stems((j.name for j in tree.walk), OFFSETS, taken)
+
+    def link(self, link: Link) -> None:
+        """Add a body whose mass, first moment and inertia about its origin are parameters."""
+        if link.inertial is None:
+            self._model.body(link.name)
+            return
+        mass, first, inertia = moments_of(link.inertial)
+        meanings = [
+            ("kg", "mass"),
+            *(("kg m", f"first moment of mass {c}") for c in "xyz"),
+            *(("kg m^2", f"inertia {entry} about the link's origin") for entry in _AXES),
+        ]
+        stem, who = self._links[link.name], named("link", link.name)
+        m, mx, my, mz, *tensor = (
+            self._model.parameter(f"{prefix}_{stem}", value, unit, f"{meaning}, {who}")
+            for prefix, value, (unit, meaning) in zip(
+                MOMENTS, (mass, *first, *inertia), meanings, strict=True
+            )
+        )
+        entries = dict(zip(_AXES, tensor, strict=True))
+        self._model.body(link.name, mass=m, first_moment=(mx, my, mz), inertia=entries)
+
+    def offset(self, joint: Joint) -> Sequence[Any]:
+        """Three parameters: the joint's position in the parent link."""
+        stem, who = self._joints[joint.name], named("joint", joint.name)
+        return [
+            self._model.parameter(
+                f"{c}_{stem}", value, "m", f"position {c} in the parent link, {who}"
+            )
+            for c, value in zip(OFFSETS, joint.at, strict=True)
+        ]
 
 
 def moments_of(inertial: Inertial) -> Moments:
     """Mass, first moment and inertia about the origin of the link's frame."""
     return carried(Moments(inertial.mass, ZERO, inertial.tensor), Rotation(), inertial.center)
-
-
-def _add_joint(model: Model, joint: Joint, names: _Names | None, report: Report) -> None:
-    with report.placed(joint.line, named("joint", joint.name)):
-        at = joint.at if names is None else _parametric_offset(model, joint, names)
-        # the child's own frame is the head: URDF puts a link's frame where its joint is
-        parent = model.frame_of(joint.parent) if False else None

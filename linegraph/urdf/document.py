@@ -15,14 +15,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from linegraph.urdf.report import Report, shown
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
     from typing import NoReturn
 
 MOST_BYTES = 16 * 2**20
-MOST_MARKUP = 1_000_000
+MOST_MARKUP = 400_000
 """Most ``<`` and ``=``: bounds the elements and attributes, each of which costs 100 bytes or more."""
+MOST_PREFIXES = 20
+"""Most undeclared namespace prefixes that are forgiven."""
 DEEPEST = 64
 """Deepest nesting of elements; a URDF needs six levels."""
+WIDEST = 100
+"""Most attributes of an element; lxml takes time that grows with the square of their number."""
 
 # whole subtrees that say nothing about the equations of motion
 _OPAQUE = frozenset({"visual", "collision", "gazebo", "transmission", "sensor", "ros2_control"})
@@ -35,8 +39,9 @@ _XACRO = frozenset(
 )
 _DECLARED = re.compile(rb"""<\?xml\s[^>]*?encoding\s*=\s*["']([^"'>]*)""")
 _PROLOG = re.compile(rb"\s*(?:<\?.*?\?>\s*|<!--.*?-->\s*)*", re.DOTALL)
+_ROOT_TAG = re.compile(_PROLOG.pattern + rb"<[^\s/>]+", re.DOTALL)
 _DTD_REFUSED = (
-    "it has a DOCTYPE, which can define entities that read other files or grow without bound; "
+    "has a DOCTYPE, which can define entities that read other files or grow without bound; "
     "delete it, a URDF needs none"
 )
 _UTF8 = "; save the file as UTF-8"
@@ -86,14 +91,10 @@ def parse_xml(data: bytes, report: Report) -> Element:
         SourceError: it is not XML, or XML of a kind that is refused.
     """
     data = _checked(data, report)
-    root, prefixes = _parsed(data, report)
+    root = _parsed(data, report)
     if root.getroottree().docinfo.internalDTD is not None:
         raise report.error(1, "", _DTD_REFUSED)
-    element = _converted(root, report, 1)
-    if prefixes:
-        line, text = prefixes
-        report.warn(line, "XML", text)
-    return element
+    return _converted(root, report, 1)
 
 
 def _require_regular(status: os.stat_result, report: Report) -> None:
@@ -147,7 +148,7 @@ def _require_plain_start(data: bytes, report: Report) -> None:
     if begins.startswith(b"<!doctype"):
         raise report.error(line, "", _DTD_REFUSED)
     if not begins.startswith(b"<"):
-        text = shown(data[start : start + 40].decode("utf-8", "replace"), 30)
+        text = shown(data[start : start + 40].decode("utf-8", "replace").split("\n")[0], 30)
         raise report.error(line, "", f'is not XML: it begins with "{text}"')
 
 
@@ -155,29 +156,42 @@ def _line_at(data: bytes, offset: int) -> int:
     return data.count(b"\n", 0, offset) + 1
 
 
-def _parsed(data: bytes, report: Report) -> tuple[Any, tuple[int, str] | None]:
-    """The root as lxml sees it, and the first line and text of a warning about prefixes."""
+def _parsed(data: bytes, report: Report) -> Any:
+    """The root as lxml sees it.
+
+    Some tools write prefixes that nothing declares. They are declared here and the whole is parsed again:
+    a parser that recovers would pass over a file's other errors, too.
+    """
     from lxml import etree  # only here: whoever reads no URDF does not wait for it
 
-    parser = _parser(recover=False)
-    try:
-        return etree.fromstring(data, parser), None
-    except etree.XMLSyntaxError as error:
-        errors = list(parser.error_log)
-        undefined = etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE
-        if not errors or any(e.type != undefined for e in errors):
-            _refuse(error, [e for e in errors if e.type != undefined], report)
-        names = sorted({match for e in errors for match in re.findall(r"prefix (\S+)", e.message)})
-    text = f"undeclared namespace prefixes ({', '.join(names)}); their elements are ignored"
-    root = etree.fromstring(data, _parser(recover=True))
-    return root, (errors[0].line, text)
+    undefined = etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE
+    prefixes: dict[str, int] = {}
+    while True:
+        parser = _parser()
+        try:
+            root = etree.fromstring(_declaring(prefixes, data), parser)
+        except etree.XMLSyntaxError as error:
+            errors = list(parser.error_log)
+            others = [e for e in errors if e.type != undefined]
+            if others or not errors:
+                _refuse(error, others, report)
+            before = len(prefixes)
+            for e in errors:
+                prefixes.setdefault(_prefix(e.message), e.line)
+            if not before < len(prefixes) <= MOST_PREFIXES or "" in prefixes:
+                _refuse(error, errors, report)
+            continue
+        if prefixes:
+            names = shown(", ".join(sorted(prefixes)), 200)
+            text = f"undeclared namespace prefixes ({names}); what has them is ignored"
+            report.warn(min(prefixes.values()), "XML", text)
+        return root
 
 
-def _parser(*, recover: bool) -> Any:
+def _parser() -> Any:
     from lxml import etree
 
     return etree.XMLParser(
-        recover=recover,
         resolve_entities=False,
         no_network=True,
         load_dtd=False,
@@ -188,22 +202,39 @@ def _parser(*, recover: bool) -> Any:
     )
 
 
+def _prefix(message: str) -> str:
+    """The prefix an error complains of; empty for one that cannot be declared in any encoding."""
+    found = re.match(r"Namespace prefix ([A-Za-z0-9_.-]+) ", message)
+    return found[1] if found else ""
+
+
+def _declaring(prefixes: Iterable[str], data: bytes) -> bytes:
+    """The document with these prefixes declared in its root element, no line moved."""
+    declarations = "".join(f' xmlns:{prefix}="undeclared:{prefix}"' for prefix in prefixes)
+    found = _ROOT_TAG.match(data)
+    end = found.end() if found else 0
+    return data[:end] + declarations.encode() + data[end:]
+
+
 def _refuse(error: Any, errors: list[Any], report: Report) -> NoReturn:
     """Say the first thing that is wrong; what follows is mostly its consequence."""
     line, message = (errors[0].line, errors[0].message) if errors else (error.lineno, error.msg)
-    raise report.error(line or None, "XML", shown(" ".join(str(message).split()), 200)) from None
+    plain = re.sub(r", (use|try) XML_PARSE_HUGE.*", "", " ".join(str(message).split()))
+    raise report.error(line or None, "XML", shown(plain, 200)) from None
 
 
 def _converted(node: Any, report: Report, depth: int) -> Element:
     line = node.sourceline or 1
     if depth > DEEPEST:
         raise report.error(line, "XML", f"elements are nested more than {DEEPEST} deep")
+    if len(node.attrib) > WIDEST:
+        raise report.error(line, "XML", f"an element has more than {WIDEST} attributes")
     tag = _tag(node)
     children: tuple[Element, ...] = ()
     if tag not in _OPAQUE:
         elements = (child for child in node if isinstance(child.tag, str))
         children = tuple(_converted(child, report, depth + 1) for child in elements)
-    return Element(tag, line, dict(node.attrib), children)
+    return Element(tag, line, dict(node.items()), children)
 
 
 def _tag(node: Any) -> str:

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.urdf.links import origin_of
 from linegraph.urdf.parts import Part, length, named_part
 from linegraph.urdf.report import nearest, shown
-from linegraph.vector import Vector
 
 if TYPE_CHECKING:
     from linegraph.urdf.document import Element
     from linegraph.urdf.report import Report
+    from linegraph.vector import Vector
 
 KINDS = {
     "revolute": "revolute",
@@ -29,13 +28,14 @@ _CHILDREN = ("parent", "child", "origin", "axis", "mimic", "dynamics", "limit")
 _IGNORED = frozenset({"safety_controller", "calibration", "hardwareInterface", "physics"})
 _DAMPERS = ("damping", "friction")
 # of one vendor's files
-_OTHER_DYNAMICS = frozenset({"D", "K", "mu_coulomb", "mu_viscous", "spring_reference", "spring_stiffness"})
+_OTHER_DYNAMICS = frozenset(
+    {"D", "K", "mu_coulomb", "mu_viscous", "spring_reference", "spring_stiffness"}
+)
 _DEFAULT_AXIS = (1.0, 0.0, 0.0)
 _OFF_UNIT = 1e-3
 
 
-@dataclass(frozen=True)
-class Mimic:
+class Mimic(NamedTuple):
     """``q = multiplier q_master + offset``."""
 
     master: str
@@ -44,8 +44,7 @@ class Mimic:
     line: int
 
 
-@dataclass(frozen=True)
-class Joint:
+class Joint(NamedTuple):
     """A joint of the robot.
 
     Attributes:
@@ -75,6 +74,8 @@ def joint_of(element: Element, report: Report, snap: float) -> Joint:
     """Read a ``<joint>``.
 
     Args:
+        element: the element.
+        report: where warnings go.
         snap: components of the axis this close to 0 are taken as 0.
 
     Raises:
@@ -103,9 +104,7 @@ def _kind(part: Part) -> str:
 
 def _link_named(part: Part, tag: str) -> Part:
     """The ``<parent>`` or ``<child>``, which both name a link."""
-    found = part.child(tag)
-    if found is None:
-        raise part.fail(f"has no <{tag}>")
+    found = part.need(tag)
     found.check_attributes(("link",))
     return found
 
@@ -139,6 +138,9 @@ def _mimic(part: Part, kind: str) -> Mimic | None:
     if mimic is None:
         return None
     mimic.check_attributes(("joint", "multiplier", "offset"))
+    if kind == "fixed":  # some vendors fix the fingers of a hand and leave the rest as it was
+        mimic.warn("<mimic> of a fixed joint is ignored")
+        return None
     if kind not in ONE_FREEDOM:
         raise mimic.fail(f"<mimic> is for joints of one freedom; this one is {kind}")
     master = mimic.word("joint")

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.rotation import Inertia, from_rpy, rotation_of, snapped
 from linegraph.urdf.parts import Part, named_part
@@ -20,13 +19,19 @@ PHYSICAL = 1e-6
 
 _CHILDREN = ("inertial", "visual", "collision")
 _IGNORED = frozenset(
-    {"contact", "self_filter", "collision_checking", "self_collision_checking", "kinematic", "gravity"}
+    {
+        "contact",
+        "self_filter",
+        "collision_checking",
+        "self_collision_checking",
+        "kinematic",
+        "gravity",
+    }
     | {"surface", "sensor", "verbose", "material", "audio"}
 )
 
 
-@dataclass(frozen=True)
-class Inertial:
+class Inertial(NamedTuple):
     """A mass distribution.
 
     Attributes:
@@ -40,8 +45,7 @@ class Inertial:
     tensor: Inertia
 
 
-@dataclass(frozen=True)
-class Link:
+class Link(NamedTuple):
     """A link of the robot; without `inertial` it has no mass."""
 
     name: str
@@ -53,6 +57,8 @@ def link_of(element: Element, report: Report, snap: float) -> Link:
     """Read a ``<link>``.
 
     Args:
+        element: the element.
+        report: where warnings go.
         snap: entries of the inertial frame's rotation this close to 0, 1 or 1/2 become these exactly.
 
     Raises:
@@ -92,9 +98,7 @@ def origin_of(part: Part) -> tuple[Vector, Vector]:
 
 
 def _mass(part: Part) -> float:
-    mass = part.child("mass")
-    if mass is None:
-        raise part.fail("<inertial> has no <mass>")
+    mass = part.need("mass")
     mass.check_attributes(("value",))
     value = mass.number("value")
     if value < 0:
@@ -125,8 +129,11 @@ def impossible(tensor: Inertia) -> str:
         'principal moments 1, 1, 3 kg m^2: the largest exceeds the sum of the others'
     """
     low, middle, high = principal_moments(tensor)
-    said = f"principal moments {low:.6g}, {middle:.6g}, {high:.6g} kg m^2"
-    margin = PHYSICAL * max(abs(low), abs(high))
+    largest = max(abs(low), abs(high))
+    margin = PHYSICAL * largest
+    # moments that are zero up to rounding are shown as zero
+    shown = (0.0 if abs(moment) < 1e-12 * largest else moment for moment in (low, middle, high))
+    said = f"principal moments {', '.join(f'{moment:.6g}' for moment in shown)} kg m^2"
     if low < -margin:
         return f"{said}: none can be negative"
     if high > low + middle + margin:

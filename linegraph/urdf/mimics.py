@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.urdf.joints import ONE_FREEDOM, Joint, Mimic
 from linegraph.urdf.report import Report, named, nearest, shown
@@ -12,8 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 
-@dataclass(frozen=True)
-class Followers:
+class Followers(NamedTuple):
     """What ``<mimic>`` comes to.
 
     Attributes:
@@ -42,7 +40,9 @@ def followers_of(joints: Sequence[Joint], report: Report) -> Followers:
     still = {name: value for name, value in position.items() if value is not None}
     for name in (name for name in mimics if name in still):
         mimic = mimics[name]
-        text = f'<mimic> follows "{shown(mimic.master)}", which cannot move: welded at {still[name]:g}'
+        text = (
+            f'<mimic> follows "{shown(mimic.master)}", which cannot move: welded at {still[name]:g}'
+        )
         report.warn(mimic.line, named("joint", name), text)
     moving = {name: mimic for name, mimic in mimics.items() if name not in still}
     return Followers(moving, {name: still[name] for name in mimics if name in still})
@@ -74,7 +74,9 @@ def _follow(
     while name in mimics and name not in position:
         if name in way:
             line = mimics[name].line
-            raise report.error(line, named("joint", name), "<mimic> follows itself through a circle")
+            raise report.error(
+                line, named("joint", name), "<mimic> follows itself through a circle"
+            )
         way[name] = None
         name = mimics[name].master
     value = position[name] if name in mimics else (0.0 if joints[name].kind == "fixed" else None)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.urdf.report import Report, named, nearest, shown
 
@@ -25,8 +24,7 @@ _XACRO = ("${", "$(")
 _RUN_XACRO = "is a xacro expression; run xacro first and give its output"
 
 
-@dataclass(frozen=True)
-class Part:
+class Part(NamedTuple):
     """An element and what it belongs to.
 
     Attributes:
@@ -58,6 +56,18 @@ class Part:
             raise self.report.error(second.line, self.thing, problem)
         return Part(self.report, self.thing, found[0]) if found else None
 
+    def need(self, tag: str) -> Part:
+        """The child of this tag.
+
+        Raises:
+            SourceError: there is none, or there are two.
+        """
+        found = self.child(tag)
+        if found is None:
+            hint = nearest(tag, (child.tag for child in self.element.children))
+            raise self.fail(f"<{self.element.tag}> has no <{tag}>{hint}")
+        return found
+
     def word(self, attribute: str) -> str:
         """An attribute that must be there.
 
@@ -66,8 +76,9 @@ class Part:
         """
         text = self.element.attributes.get(attribute)
         if text is None:
-            hint = nearest(attribute, self.element.attributes)
-            raise self.fail(f'<{self.element.tag}> has no attribute "{attribute}"{hint}')
+            others = ", ".join(f'"{shown(other)}"' for other in list(self.element.attributes)[:8])
+            found = f", only {others}" if others else ""
+            raise self.fail(f'<{self.element.tag}> has no attribute "{attribute}"{found}')
         if any(mark in text for mark in _XACRO):
             raise self.fail(f'{attribute}="{shown(text)}" {_RUN_XACRO}')
         return text
@@ -78,6 +89,8 @@ class Part:
         """Exactly `count` finite numbers, separated by white space.
 
         Args:
+            attribute: its name.
+            count: how many.
             default: what a missing attribute stands for; None where it may not be missing.
 
         Raises:
@@ -126,7 +139,7 @@ class Part:
     def check_attributes(self, known: Sequence[str], ignored: Collection[str] = ()) -> None:
         """Warn of attributes that mean nothing here; those with a prefix are extensions."""
         for attribute in self.element.attributes:
-            if attribute not in known and attribute not in ignored and ":" not in attribute:
+            if attribute not in known and attribute not in ignored and attribute[0] != "{":
                 missing = [name for name in known if name not in self.element.attributes]
                 hint = nearest(attribute, missing)
                 where = f'<{self.element.tag}> attribute "{shown(attribute)}"'

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from linegraph.errors import ModelError, SourceError
@@ -49,11 +48,11 @@ class Report:
 
 
 def shown(text: str, longest: int = LONGEST_SHOWN) -> str:
-    """File text made fit for a message: on one line, printable, not too long.
+    r"""File text made fit for a message: on one line, printable, not too long.
 
     Example:
         >>> print(shown("a" + chr(10) + "b"))
-        a\\x0ab
+        a\x0ab
     """
     cut = text if len(text) <= longest else text[: longest - 3] + "..."
     return "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in cut)
@@ -66,6 +65,8 @@ def named(kind: str, name: str) -> str:
 
 def nearest(name: str, known: Iterable[str]) -> str:
     """A hint that ends a message: the known name most like `name`, or nothing."""
+    from difflib import get_close_matches
+
     # difflib compares with every name: hostile files must not make that slow
     candidates = [k for k in known if len(k) <= 4 * LONGEST_SHOWN][:5000]
     close = get_close_matches(name[: 4 * LONGEST_SHOWN], candidates, 1)

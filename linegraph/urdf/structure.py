@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from linegraph.body import GROUND, MASS_CENTER
 from linegraph.urdf.joints import Joint
@@ -19,8 +18,7 @@ Named = TypeVar("Named", Link, Joint)
 _LISTED = 8
 
 
-@dataclass(frozen=True)
-class Tree:
+class Tree(NamedTuple):
     """The robot as a tree.
 
     Attributes:
@@ -38,15 +36,20 @@ def tree_of(links: Sequence[Link], joints: Sequence[Joint], line: int, report: R
     """Connect links by joints.
 
     Args:
+        links: in the order of the file.
+        joints: in the order of the file.
         line: of the robot, for what no single element is to blame for.
+        report: places the errors.
 
     Raises:
         SourceError: names clash, a joint names no link, or the links form no single tree.
     """
     if not links:
         raise report.error(line, "robot", "has no links")
-    by_name = _by_name("link", links, report)
-    _by_name("joint", joints, report)
+    _require_unique("link", links, report)
+    _require_unique("joint", joints, report)
+    links, joints = _clear_of_ground(links, joints, report)
+    by_name = {link.name: link for link in links}
     carriers = _carriers(by_name, joints, report)
     roots = [link for link in links if link.name not in carriers]
     if len(roots) > 1:
@@ -61,14 +64,35 @@ def tree_of(links: Sequence[Link], joints: Sequence[Joint], line: int, report: R
     return Tree(roots[0], by_name, walk)
 
 
-def _by_name(kind: str, found: Sequence[Named], report: Report) -> dict[str, Named]:
+def _clear_of_ground(
+    links: Sequence[Link], joints: Sequence[Joint], report: Report
+) -> tuple[Sequence[Link], Sequence[Joint]]:
+    """Rename a link that has the name of the inertial frame."""
+    names = {link.name: link for link in links}
+    if GROUND not in names:
+        return links, joints
+    other = f"{GROUND}_link"
+    while other in names:
+        other += "_"
+    text = f'"{GROUND}" is the inertial frame; the link becomes the body "{other}"'
+    report.warn(names[GROUND].line, named("link", GROUND), text)
+
+    def renamed(name: str) -> str:
+        return other if name == GROUND else name
+
+    return (
+        [link._replace(name=renamed(link.name)) for link in links],
+        [j._replace(parent=renamed(j.parent), child=renamed(j.child)) for j in joints],
+    )
+
+
+def _require_unique(kind: str, found: Sequence[Named], report: Report) -> None:
     names: dict[str, Named] = {}
     for one in found:
         first = names.setdefault(one.name, one)
         if first is not one:
             problem = f"the name is taken by the {kind} on line {first.line}"
             raise report.error(one.line, named(kind, one.name), problem)
-    return names
 
 
 def _carriers(
@@ -115,12 +139,12 @@ def _depth_first(root: str, joints: Sequence[Joint]) -> tuple[Joint, ...]:
     # not recursive: a chain may be longer than Python's stack
     pending: list[Iterator[Joint]] = [iter(beyond.get(root, ()))]
     while pending:
-        joint = next(pending[-1], None)
-        if joint is None:
-            pending.pop()
-        else:
+        for joint in pending[-1]:
             walk.append(joint)
             pending.append(iter(beyond.get(joint.child, ())))
+            break
+        else:
+            pending.pop()
     return tuple(walk)
 
 
@@ -151,9 +175,6 @@ def _check_vertices(links: Sequence[Link], joints: Sequence[Joint], report: Repo
 
     for link in links:
         who = named("link", link.name)
-        if link.name == GROUND:
-            problem = f'"{GROUND}" is the name of the inertial frame; rename the link'
-            raise report.error(link.line, who, problem)
         take(link.name, link.line, who)
         take(f"{link.name}.{MASS_CENTER}", link.line, who)
     for joint in joints:
