@@ -111,7 +111,7 @@ class _Functions:
 
     @cached_property
     def bias(self) -> Result:
-        """H as a result."""
+        """The bias h as a result."""
         entries = orthogonality.inverse_dynamics(self.short, self.dag, self.arms)
         return Result("h", (len(entries),), tuple(entries), "bias vector")
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from typing import NoReturn
 
 MOST_BYTES = 16 * 2**20
-MOST_MARKUP = 400_000
+MOST_MARKUP = 200_000
 """Most ``<`` and ``=``: bounds the elements and attributes, each of which costs 100 bytes or more."""
 MOST_PREFIXES = 20
 """Most undeclared namespace prefixes that are forgiven."""
@@ -94,7 +94,7 @@ def parse_xml(data: bytes, report: Report) -> Element:
     root = _parsed(data, report)
     if root.getroottree().docinfo.internalDTD is not None:
         raise report.error(1, "", _DTD_REFUSED)
-    return _converted(root, report, 1)
+    return _converted(root, report, 1, 1)
 
 
 def _require_regular(status: os.stat_result, report: Report) -> None:
@@ -223,8 +223,9 @@ def _refuse(error: Any, errors: list[Any], report: Report) -> NoReturn:
     raise report.error(line or None, "XML", shown(plain, 200)) from None
 
 
-def _converted(node: Any, report: Report, depth: int) -> Element:
-    line = node.sourceline or 1
+def _converted(node: Any, report: Report, depth: int, parent_line: int) -> Element:
+    # after line 65535 libxml2 knows the lines only of elements with text in them, so inherit
+    line = max(node.sourceline or 1, parent_line)
     if depth > DEEPEST:
         raise report.error(line, "XML", f"elements are nested more than {DEEPEST} deep")
     if len(node.attrib) > WIDEST:
@@ -233,7 +234,7 @@ def _converted(node: Any, report: Report, depth: int) -> Element:
     children: tuple[Element, ...] = ()
     if tag not in _OPAQUE:
         elements = (child for child in node if isinstance(child.tag, str))
-        children = tuple(_converted(child, report, depth + 1) for child in elements)
+        children = tuple(_converted(child, report, depth + 1, line) for child in elements)
     return Element(tag, line, dict(node.items()), children)
 
 

@@ -17,8 +17,12 @@ if TYPE_CHECKING:
 LARGEST = 1e50
 """No quantity of a robot in SI units is larger; what is computed from such numbers stays finite."""
 
+LONGEST_NUMBER = 400
+"""More characters than any way to write a double."""
+
 # The only numbers: not what float() takes besides (1_0, nan, inf, digits of other scripts).
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+# No two parts can match the same digits, so that matching takes linear time.
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _WORD = re.compile(r"[^ \t\r\n]+")
 _XACRO = ("${", "$(")
 _RUN_XACRO = "is a xacro expression; run xacro first and give its output"
@@ -80,7 +84,7 @@ class Part(NamedTuple):
             found = f", only {others}" if others else ""
             raise self.fail(f'<{self.element.tag}> has no attribute "{attribute}"{found}')
         if any(mark in text for mark in _XACRO):
-            raise self.fail(f'{attribute}="{shown(text)}" {_RUN_XACRO}')
+            raise self.fail(f'<{self.element.tag}> {attribute}="{shown(text)}" {_RUN_XACRO}')
         return text
 
     def numbers(
@@ -102,7 +106,7 @@ class Part(NamedTuple):
         words = _WORD.findall(text)
         said = f'<{self.element.tag}> {attribute}="{shown(text)}"'
         for word in words:
-            if not _NUMBER.fullmatch(word):
+            if len(word) > LONGEST_NUMBER or not _NUMBER.fullmatch(word):
                 raise self.fail(f'{said}: "{shown(word, 40)}" is not a finite decimal number')
         if len(words) != count:
             needed = "one number" if count == 1 else f"{count} numbers"
