@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -16,6 +17,7 @@ from linegraph.vector import ZERO, Matrix, Vector
 GROUND = "ground"
 MASS_CENTER = "mass_center"
 
+SMALLEST = 1e-150
 _AXES = ("xx", "xy", "xz", "yy", "yz", "zz")
 
 
@@ -117,12 +119,18 @@ def unit(axis: Sequence[Any], who: str) -> Vector:
         ModelError: three zeros.
     """
     x, y, z = axis
-    length: Any = (x * x + y * y + z * z) ** 0.5 if all(map(is_number, axis)) else _length(axis)
+    length: Any = math.hypot(x, y, z) if all(map(is_number, axis)) else _length(axis)
     if length == 0:
         raise ModelError(who, "the axis has length zero; give a direction such as (0, 0, 1)")
     if length == 1:
         return (x, y, z)
-    return (x / length, y / length, z / length)
+    return (_part(x, length), _part(y, length), _part(z, length))
+
+
+def _part(x: Any, length: Any) -> Any:
+    """A component of a unit vector; one too small to be squared is none."""
+    part = x / length
+    return 0 if is_number(part) and abs(part) < SMALLEST else part
 
 
 def _length(axis: Sequence[Any]) -> Any:

@@ -104,10 +104,20 @@ def derive(model: Model) -> Derivation:
         >>> derive(model).numeric().mass_matrix([0.3])
         [[0.5]]
     """
-    graph = model.graph()
-    topology = mechanical_topology(model, graph)
-    require_regular(model, topology)
+    try:
+        graph = model.graph()
+        topology = mechanical_topology(model, graph)
+        require_regular(model, topology)
+    except ModelError as error:
+        raise _placed(error, model) from None
     return Derivation(model, graph, topology)
+
+
+def _placed(error: ModelError, model: Model) -> ModelError:
+    """Give an error the place in the file that the model was read from."""
+    if model.source is None:
+        return error
+    return SourceError(model.source, model.places.get(error.thing), error.thing, error.problem)
 
 
 def default_values(model: Model) -> dict[str, float]:

@@ -130,6 +130,9 @@ class Model:
         self.ground_frames: dict[str, Placement] = {}
         self.parameters: dict[str, Parameter] = {}
         self.warnings: list[str] = []
+        # where a file said what, for errors found later: the file, and a line for each thing
+        self.source: str | None = None
+        self.places: dict[str, int] = {}
         self._joints: dict[str, Joint] = {}
         self._couplings: dict[str, Coupling] = {}
 

@@ -48,6 +48,8 @@ def build(name: str, tree: Tree, options: Options, report: Report) -> Model:
     """
     followers = followers_of(tree.walk, report)
     model = Model(name, snap=options.snap)
+    model.source = report.source
+    model.places = {f'joint "{joint.name}"': joint.line for joint in tree.walk}
     add = _Symbolic(model, tree) if options.symbolic else _Folded(model)
     with report.placed(tree.root.line, named("link", tree.root.name)):
         add.link(tree.root)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from pathlib import PurePath
 
@@ -96,6 +97,7 @@ def parse(
     joints = [joint_of(e, report, snap) for e in root.children if e.tag == "joint"]
     tree = tree_of(links, joints, root.line, report)
     model = build(name, tree, Options(base == "floating", symbolic, snap), report)
+    model.about = f"Derived from a URDF with SHA-256 {hashlib.sha256(text).hexdigest()}."
     model.warnings += report.warnings
     return model
 
