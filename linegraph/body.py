@@ -122,14 +122,12 @@ def unit(axis: Sequence[Any], who: str) -> Vector:
     length: Any = math.hypot(x, y, z) if all(map(is_number, axis)) else _length(axis)
     if length == 0:
         raise ModelError(who, "the axis has length zero; give a direction such as (0, 0, 1)")
-    if length == 1:
-        return (x, y, z)
     return (_part(x, length), _part(y, length), _part(z, length))
 
 
 def _part(x: Any, length: Any) -> Any:
     """A component of a unit vector; one too small to be squared is none."""
-    part = x / length
+    part = x if length == 1 else x / length
     return 0 if is_number(part) and abs(part) < SMALLEST else part
 
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph import orthogonality
 from linegraph.algebra import Algebra, Floats
+from linegraph.errors import ModelError, SourceError
 from linegraph.kinematics import KinematicTree, kinematic_tree, mechanical_topology
 from linegraph.regularity import require_regular
 
