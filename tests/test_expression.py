@@ -427,7 +427,6 @@ def test_deep_chains_need_no_recursion() -> None:
         y = dag.sin(y) + x
     made = program(y)
     assert made.operations == DEEP
-    assert value(y, q=[0.5]) == pytest.approx(0.5 + math.sin(value(y.b, q=[0.5])), abs=2)
     expected = 0.5
     for _ in range(DEEP // 2):
         expected = math.sin(expected) + 0.5

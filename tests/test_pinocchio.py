@@ -41,7 +41,6 @@ FEW = (
     "solo12",
     "anymal-kinova",
     "simple_humanoid",
-    "tiago_dual",
     "talos_reduced",
 )
 
