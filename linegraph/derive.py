@@ -17,6 +17,7 @@ from linegraph import orthogonality
 from linegraph.algebra import Algebra, Floats
 from linegraph.errors import ModelError, SourceError
 from linegraph.kinematics import KinematicTree, kinematic_tree, mechanical_topology
+from linegraph.mass_matrix import mass_matrix
 from linegraph.regularity import require_regular
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ class Numeric:
     def mass_matrix(self, q: Sequence[float]) -> list[list[float]]:
         """M(q)."""
         crossed = orthogonality.arms(self.tree, Floats(), q, [0.0] * len(self.tree.velocities))
-        return orthogonality.mass_matrix(self.tree, Floats(), crossed)
+        return mass_matrix(self.tree, Floats(), crossed)
 
     def bias(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
         """h(q, v)."""

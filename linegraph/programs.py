@@ -10,6 +10,7 @@ from linegraph.articulated import forward_dynamics
 from linegraph.errors import ModelError
 from linegraph.expression import Dag, Node
 from linegraph.factorization import Solution, solve
+from linegraph.mass_matrix import mass_matrix
 from linegraph.program import Argument, Call, Check, Module, Program, Quantity, Result, assemble
 from linegraph.regularity import SINGULAR, is_solid
 
@@ -90,7 +91,7 @@ class _Functions:
     @cached_property
     def mass_matrix(self) -> Result:
         """M as a result."""
-        rows = orthogonality.mass_matrix(self.short, self.dag, self.arms)
+        rows = mass_matrix(self.short, self.dag, self.arms)
         entries = tuple(entry for row in rows for entry in row)
         return Result("M", (len(rows), len(rows)), entries, "mass matrix, both triangles")
 

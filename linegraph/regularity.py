@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from linegraph.algebra import Floats
 from linegraph.errors import ModelError
 from linegraph.kinematics import KinematicTree, Link, kinematic_tree
-from linegraph.orthogonality import arms, mass_matrix
+from linegraph.mass_matrix import mass_matrix
+from linegraph.orthogonality import arms
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

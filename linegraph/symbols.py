@@ -10,6 +10,7 @@ import sympy
 from linegraph import orthogonality
 from linegraph.errors import ModelError
 from linegraph.expression import Dag, Node
+from linegraph.mass_matrix import mass_matrix
 from linegraph.paper import PaperMatrices, paper_matrices
 
 if TYPE_CHECKING:
@@ -79,7 +80,7 @@ class Symbolic:
     @cached_property
     def mass_matrix(self) -> Expr:
         """M(q) as a sympy Matrix, simplified entry by entry."""
-        rows = orthogonality.mass_matrix(self.tree, self.algebra, self._arms)
+        rows = mass_matrix(self.tree, self.algebra, self._arms)
         return sympy.Matrix(rows).applyfunc(simplified)
 
     @cached_property

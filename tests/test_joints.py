@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from linegraph import Model, ModelError, derive
 from linegraph.algebra import Floats
 from linegraph.joints import JOINTS, Joint
-from linegraph.orthogonality import arms, inverse_dynamics, mass_matrix, reverse
+from linegraph.mass_matrix import mass_matrix
+from linegraph.orthogonality import arms, inverse_dynamics, reverse
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
