@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+from linegraph.checks import finite, listed, plain
 from linegraph.domains import ROTATION, TRANSLATION
 from linegraph.errors import ModelError
 from linegraph.graph import Edge
@@ -81,15 +82,17 @@ def inertia_of(given: Any, who: str) -> Inertia:
     if isinstance(given, Mapping):
         unknown = [key for key in given if key not in _AXES]
         if unknown:
-            raise ModelError(
-                who, f"unknown inertia entry {unknown[0]!r}; entries are {', '.join(_AXES)}"
-            )
-        return tuple(given.get(key, 0) for key in _AXES)
-    rows = [list(row) if isinstance(row, Sequence) else row for row in given]
+            known = ", ".join(_AXES)
+            raise ModelError(who, f"unknown inertia entry {unknown[0]!r}; entries are {known}")
+        return tuple(plain(given.get(key, 0)) for key in _AXES)
+    parts = listed(given)
+    rows = [listed(row) for row in parts] if isinstance(parts, list) else []
     if len(rows) == 3 and not any(isinstance(row, list) for row in rows):
         return (rows[0], 0, 0, rows[1], 0, rows[2])
     if len(rows) != 3 or any(not isinstance(row, list) or len(row) != 3 for row in rows):
         raise ModelError(who, "inertia must be (xx, yy, zz), a 3 x 3 matrix or named entries")
+    for row in rows:
+        finite(row, who)
     if any(not _alike(rows[i][j], rows[j][i], rows) for i in range(3) for j in range(i)):
         raise ModelError(who, "the inertia matrix is not symmetric")
     return (rows[0][0], rows[0][1], rows[0][2], rows[1][1], rows[1][2], rows[2][2])

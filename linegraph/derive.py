@@ -54,6 +54,9 @@ class Derivation:
             ModelError: a parameter has no value.
         """
         values = {**default_values(self.model), **(parameters or {})}
+        for name in self.model.parameters:
+            if name not in values:
+                raise ModelError(f'parameter "{name}"', "has no value")
         return Numeric(self.tree(Floats(), values))
 
     @cached_property

@@ -197,10 +197,10 @@ class Dag:
             return self.negate(x)
         if x.op == NEG:
             return self._scale(-factor, x.a)
-        if factor < 0:
-            return self.negate(self._node(MUL, x, -factor))
         if x.op == MUL and not isinstance(x.b, Node):
             return self._scale(factor * x.b, x.a)
+        if factor < 0:
+            return self.negate(self._node(MUL, x, -factor))
         return self._node(MUL, x, factor)
 
     def _function(self, name: str, x: Operand) -> Operand:

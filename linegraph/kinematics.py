@@ -17,7 +17,7 @@ from linegraph.body import GROUND, Body, Placement
 from linegraph.domains import TRANSLATION
 from linegraph.errors import ModelError
 from linegraph.joints import Joint, Moments
-from linegraph.parameters import resolver
+from linegraph.parameters import is_number, resolver
 from linegraph.rotation import IDENTITY_MATRIX, Rotation, product, rotation_of, snapped
 from linegraph.topology import Step, Topology, choose_forest
 from linegraph.vector import ZERO, Scalar, Vector
@@ -86,6 +86,14 @@ class KinematicTree:
         """Whether two joints share a coordinate."""
         places = [freedom.index for link in self.links for freedom in link.velocities]
         return len(places) > len(set(places))
+
+    @property
+    def outward(self) -> list[int]:
+        """Independent velocities from the root to the leaves."""
+        order: dict[int, None] = {}
+        for link in self.links:
+            order.update((freedom.index, None) for freedom in link.velocities)
+        return list(order)
 
     def regrouped(self) -> KinematicTree:
         """The same M and h from fewer parameters: what a parent can carry is handed to it, leaf to root.
@@ -163,13 +171,22 @@ def inverse(placement: Placement) -> Placement:
     return Placement(vector.negate(rotation_of(back).out(placement.at)), back)
 
 
-def moved(near: Placement, joint: Joint, value: float, snap: float) -> Placement:
+def moved(near: Placement, joint: Joint, value: Any, snap: float) -> Placement:
     """The head frame of a one-freedom joint at a fixed value of its coordinate."""
     alignment = Placement(ZERO, joint.alignment())
-    motion = joint.motion(Floats(), (value,), (0,))
+    motion = joint.motion(_algebra_of(value), (value,), (0,))
     turn = Placement(motion.displacement, snapped(motion.rotation.matrix(), snap))
     there = compose(compose(near, alignment, snap), turn, snap)
     return compose(there, inverse(alignment), snap)
+
+
+def _algebra_of(value: Any) -> Algebra:
+    """Where a constant angle is calculated: among floats, or a symbol's among sympy."""
+    if is_number(value):
+        return Floats()
+    from linegraph.symbols import Sympy
+
+    return Sympy()
 
 
 def mechanical_topology(model: Model, graph: SystemGraph) -> Topology:
@@ -203,6 +220,16 @@ def kinematic_tree(
     """
     resolve = resolver(algebra, parameters)
     state = _State(model, resolve)
+    for quantities in (state.positions, state.velocities):
+        names = [quantity.name for quantity in quantities]
+        for name in (
+            {name for name in names if names.count(name) > 1}
+            if len(set(names)) < len(names)
+            else ()
+        ):
+            raise ModelError(
+                f'coordinate "{name}"', "two coordinates have this name; rename a joint"
+            )
     return _Walk(model, state, resolve).along(topology.walk)
 
 

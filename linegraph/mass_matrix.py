@@ -31,14 +31,14 @@ def mass_matrix(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> Ro
     """
     size = len(tree.velocities)
     rows: Rows = [[0] * size for _ in range(size)]
-    composites = _composites(tree, algebra, crossed)
+    carried_by = composites(tree, algebra, crossed)
     inward = _inward_in_ground if ground_is_cheaper(tree, crossed) else _inward_by_frames
     columns = inward(tree, algebra, crossed)
     for i, link in enumerate(tree.links):
         set_label(algebra, f"mass matrix, {caption(link)}")
         motion = crossed[i].motion
         for a, freedom in enumerate(link.velocities):
-            force, torque = _inertia_force(composites[i], motion.angular[a], motion.linear[a])
+            force, torque = _inertia_force(carried_by[i], motion.angular[a], motion.linear[a])
             for b in range(a + 1):
                 entry = projection(motion, b, force, torque)
                 _contribute(rows, freedom, link.velocities[b], entry, once=a == b)
@@ -115,16 +115,16 @@ TURNING: dict[type, int] = {Relabel: 0, Turn: 12, Full: 30}
 """Operations to turn a force and a torque by a factor of a rotation."""
 
 
-def _composites(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> list[Moments]:
+def composites(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> list[Moments]:
     """What each joint carries: moments gathered from the leaves to the root (H m H^T and its kin)."""
-    composites = [link.moments for link in tree.links]
+    moments = [link.moments for link in tree.links]
     for i in reversed(range(len(tree.links))):
         link = tree.links[i]
         if link.parent >= 0:
             set_label(algebra, f"carried by {caption(link)}")
-            seen = carried(composites[i], crossed[i].rotation, crossed[i].at)
-            composites[link.parent] = joined(composites[link.parent], seen)
-    return composites
+            seen = carried(moments[i], crossed[i].rotation, crossed[i].at)
+            moments[link.parent] = joined(moments[link.parent], seen)
+    return moments
 
 
 def _inertia_force(composite: Moments, angular: Vector, linear: Vector) -> tuple[Vector, Vector]:

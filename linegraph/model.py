@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 
 from linegraph.body import GROUND, MASS_CENTER, Body, Placement, inertia_of, orientation, unit
+from linegraph.checks import finite, nearest, plain, rotation_matrix, triple, vector
 from linegraph.domains import ROTATION, TRANSLATION
 from linegraph.errors import ModelError
 from linegraph.graph import Edge, SystemGraph, unite
 from linegraph.joints import Fixed, Free, Joint, Planar, Prismatic, Revolute
 from linegraph.parameters import Parameter, is_number
 from linegraph.rotation import IDENTITY_MATRIX, snapped
-from linegraph.vector import ZERO, Matrix, Vector
+from linegraph.vector import ZERO, Vector
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Sequence
 
 STANDARD_GRAVITY: Vector = (0, 0, -9.81)
 SNAP = 1e-11
@@ -39,7 +39,7 @@ class BodyHandle:
         rpy: Sequence[float] | None = None,
         axis: Sequence[float] | None = None,
         angle: float = 0.0,
-        rotation: Matrix | None = None,
+        rotation: Any = None,
     ) -> str:
         """Add a named frame and return its terminal.
 
@@ -55,8 +55,12 @@ class BodyHandle:
             ``"body.frame"``, to be used in `between`.
         """
         who = f'frame "{self.name}.{name}"'
-        matrix = rotation or orientation(who, _triple(rpy, who), _triple(axis, who), angle)
-        placement = Placement(_vector(at, who), snapped(matrix, self.model.snap))
+        finite((angle,), who)
+        if rotation is None:
+            matrix = orientation(who, triple(rpy, who), triple(axis, who), angle)
+        else:
+            matrix = rotation_matrix(rotation, who)
+        placement = Placement(vector(at, who), snapped(matrix, self.model.snap))
         return self.model.add_frame(self.name, name, placement)
 
     def __str__(self) -> str:
@@ -149,7 +153,7 @@ class Model:
 
     @gravity.setter
     def gravity(self, acceleration: Sequence[Any]) -> None:
-        self._gravity = _vector(acceleration, "gravity")
+        self._gravity = vector(acceleration, "gravity")
 
     @property
     def joints(self) -> tuple[Joint, ...]:
@@ -172,7 +176,7 @@ class Model:
         if name in self.parameters:
             raise ModelError(f'parameter "{name}"', "is declared twice")
         if value is not None:
-            _finite((value,), f'parameter "{name}"')
+            finite((value,), f'parameter "{name}"')
         return self.parameters.setdefault(name, Parameter(name, value, unit, about))
 
     def body(
@@ -202,12 +206,14 @@ class Model:
             raise ModelError(who, "the name is taken; names of bodies are unique")
         if mass_center is not None and first_moment is not None:
             raise ModelError(who, "give mass_center or first_moment, not both")
+        mass = plain(mass)
         tensor = inertia_of(inertia, who)
-        _finite((mass, *tensor), who)
+        finite((mass, *tensor), who)
         if is_number(mass) and mass < 0:
             raise ModelError(who, f"the mass is negative ({mass}); it must be 0 or more")
-        center = None if first_moment is not None else _vector(mass_center or ZERO, who)
-        first = _vector(first_moment, who) if first_moment is not None else None
+        at = ZERO if mass_center is None else mass_center
+        center = None if first_moment is not None else vector(at, who)
+        first = vector(first_moment, who) if first_moment is not None else None
         self.bodies[name] = Body(name, mass, center, first, tensor, {})
         return BodyHandle(self, name)
 
@@ -232,7 +238,7 @@ class Model:
         who = f'joint "{joint.name}"'
         if joint.name in self._joints:
             raise ModelError(who, "the name is taken; names of joints are unique")
-        joint = replace(joint, axis=unit(_vector(joint.axis, who), who))
+        joint = replace(joint, axis=unit(vector(joint.axis, who), who))
         self._joints[joint.name] = joint
         return joint
 
@@ -248,7 +254,7 @@ class Model:
         who = f'joint "{follower}"'
         if follower in self._couplings:
             raise ModelError(who, "is coupled twice")
-        _finite((ratio, offset), who)
+        finite((ratio, offset), who)
         self._couplings[follower] = Coupling(follower, master, ratio, offset)
 
     def lock(self, joint: str, value: float = 0.0) -> None:
@@ -261,13 +267,11 @@ class Model:
         """
         who = f'joint "{joint}"'
         if joint not in self._joints:
-            raise ModelError(
-                who, f"there is no such joint to lock; {_nearest(joint, self._joints)}"
-            )
+            raise ModelError(who, f"there is no such joint to lock; {nearest(joint, self._joints)}")
         found = self._joints[joint]
         if found.freedoms != 1:
             raise ModelError(who, f"is {found.kind}; only joints of one freedom can be locked")
-        _finite((value,), who)
+        finite((value,), who)
         self._couplings.pop(joint, None)
         self._weld(found, value)
         for coupling in list(self.couplings):
@@ -279,7 +283,11 @@ class Model:
         from linegraph.kinematics import moved
 
         tail, head = joint.between
-        body, placement = self.terminals()[tail]
+        terminals = self.terminals()
+        if tail not in terminals:
+            who = f'joint "{joint.name}"'
+            raise ModelError(who, f'there is no body or frame "{tail}"; {nearest(tail, terminals)}')
+        body, placement = terminals[tail]
         frame = f"{joint.name}.locked"
         terminal = self.add_frame(body, frame, moved(placement, joint, value, self.snap))
         self._joints[joint.name] = Fixed(joint.name, (terminal, head))
@@ -303,6 +311,10 @@ class Model:
             add(body.name, body.name, Placement(ZERO, IDENTITY_MATRIX))
             for name, placement in body.frames.items():
                 add(f"{body.name}.{name}", body.name, placement)
+        for name in self.bodies:
+            if f"{name}.{MASS_CENTER}" in found:
+                problem = f'is the name of the mass centre of "{name}"; rename a body or frame'
+                raise ModelError(f'terminal "{name}.{MASS_CENTER}"', problem)
         return found
 
     def graph(self) -> SystemGraph:
@@ -316,7 +328,7 @@ class Model:
             who = f'joint "{joint.name}"'
             for terminal in joint.between:
                 if terminal not in terminals:
-                    hint = _nearest(terminal, terminals)
+                    hint = nearest(terminal, terminals)
                     raise ModelError(who, f'there is no body or frame "{terminal}"; {hint}')
             if len({terminals[terminal][0] for terminal in joint.between}) == 1:
                 raise ModelError(who, f'connects body "{terminals[joint.between[0]][0]}" to itself')
@@ -337,32 +349,3 @@ class Model:
             for domain in (TRANSLATION.name, ROTATION.name)
             for joint in self.joints
         ]
-
-
-def _vector(given: Sequence[Any], who: str) -> Vector:
-    """Three finite numbers or symbols."""
-    if len(given) != 3:
-        raise ModelError(who, f"three components are needed, got {len(given)}")
-    _finite(given, who)
-    return (given[0], given[1], given[2])
-
-
-def _triple(given: Sequence[Any] | None, who: str) -> Vector | None:
-    return None if given is None else _vector(given, who)
-
-
-def _finite(values: Iterable[Any], who: str) -> None:
-    for value in values:
-        if is_number(value) and not math.isfinite(value):
-            raise ModelError(who, f"{value} is not a finite number")
-
-
-def _nearest(name: str, known: Iterable[str]) -> str:
-    """A hint: the known name most like `name`, or all of a few."""
-    from difflib import get_close_matches
-
-    names = list(known)
-    close = get_close_matches(name, names, 1)
-    if close:
-        return f'did you mean "{close[0]}"?'
-    return f"known: {', '.join(names[:8])}{', ...' if len(names) > 8 else ''}"

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from linegraph.errors import ModelError
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
@@ -70,13 +72,6 @@ def is_number(x: Any) -> bool:
     return not isinstance(x, Parameter) and not hasattr(x, "free_symbols")
 
 
-def free_names(x: Any) -> list[str]:
-    """The names of the parameters a model value depends on, sorted."""
-    if isinstance(x, Parameter):
-        return [x.name]
-    return sorted(symbol.name for symbol in getattr(x, "free_symbols", ()))
-
-
 def resolver(algebra: Algebra, parameters: Mapping[str, Scalar]) -> Callable[[Any], Scalar]:
     """A function from model values to scalars of `algebra`.
 
@@ -85,6 +80,8 @@ def resolver(algebra: Algebra, parameters: Mapping[str, Scalar]) -> Callable[[An
 
     def resolve(x: Any) -> Scalar:
         if isinstance(x, Parameter):
+            if x.name not in parameters:
+                raise ModelError(f'parameter "{x.name}"', "does not belong to this model")
             return parameters[x.name]
         if hasattr(x, "free_symbols"):
             from linegraph.symbols import evaluate

@@ -175,7 +175,7 @@ def _factored(f: _Functions) -> Program:
         [f.dag.symbol("M", i * size + j) if used else 0 for j, used in enumerate(row)]
         for i, row in enumerate(f.pattern)
     ]
-    solution = solve(rows, right, _outward(f.tree))
+    solution = solve(rows, right, f.tree.outward)
     local = (Argument("M", size * size, "mass matrix"), Argument("h", size, "bias vector"))
     names = tuple(argument.name for argument in f.arguments("q", "v"))
     bounds = [SINGULAR * rows[i][i] for i in range(size)]
@@ -184,7 +184,7 @@ def _factored(f: _Functions) -> Program:
 
 def _factored_cost(f: _Functions) -> int:
     """Operations of `equations` and of what `_factored` adds: p(p+1) + 4p + 3 for p couplings inward."""
-    place = {k: n for n, k in enumerate(_outward(f.tree))}
+    place = {k: n for n, k in enumerate(f.tree.outward)}
     inward = [
         sum(used and place[j] < place[i] for j, used in enumerate(row))
         for i, row in enumerate(f.pattern)
@@ -234,14 +234,6 @@ PROGRAMS: tuple[Callable[[_Functions], Program], ...] = (
     _energy,
 )
 """The register of emitted functions, in emitted order."""
-
-
-def _outward(tree: KinematicTree) -> list[int]:
-    """Independent velocities from the root to the leaves."""
-    order: dict[int, None] = {}
-    for link in tree.links:
-        order.update((freedom.index, None) for freedom in link.velocities)
-    return list(order)
 
 
 def inputs_of(tree: KinematicTree) -> tuple[Quantity, ...]:

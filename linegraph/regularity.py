@@ -8,17 +8,18 @@ from typing import TYPE_CHECKING
 from linegraph.algebra import Floats
 from linegraph.errors import ModelError
 from linegraph.kinematics import KinematicTree, Link, kinematic_tree
-from linegraph.mass_matrix import mass_matrix
+from linegraph.mass_matrix import composites, mass_matrix
 from linegraph.orthogonality import arms
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from linegraph.joints import Moments
     from linegraph.model import Model
     from linegraph.topology import Topology
 
 SINGULAR = 1e-13
-"""A pivot of M below this fraction of its diagonal entry is zero up to rounding."""
+"""A pivot of M below this fraction of what it was made of is zero up to rounding."""
 
 
 def require_regular(model: Model, topology: Topology) -> None:
@@ -36,13 +37,22 @@ def require_regular(model: Model, topology: Topology) -> None:
     if all(is_solid(link) for link in tree.links):
         return
     failures = [_first_dependent(tree, seed) for seed in (1, 2)]
-    if all(failure is not None for failure in failures):
-        link = _link_of(tree, failures[-1] or 0)
-        problem = (
-            f"moves no inertia of its own ({link.name}): the mass matrix is singular. Give the bodies it "
-            "carries mass and inertia, or lock or fix the joint"
-        )
-        raise ModelError(f'joint "{link.joint.name}"', problem)
+    if all(failures):
+        index, pivot = failures[-1] or (0, 0.0)
+        raise _refusal(_link_of(tree, index), pivot)
+
+
+def _refusal(link: Link, pivot: float) -> ModelError:
+    """What to tell of a link that a coordinate moves without inertia, or with less than none."""
+    who = f'joint "{link.joint.name}"'
+    if pivot < 0:
+        problem = f"moves a mass or inertia that is negative ({link.name})"
+        return ModelError(who, f"{problem}: the mass matrix is not positive definite")
+    problem = (
+        f"moves no inertia of its own ({link.name}): the mass matrix is singular. Give the bodies it "
+        "carries mass and inertia, or lock or fix the joint"
+    )
+    return ModelError(who, problem)
 
 
 def _sample_values(model: Model) -> Mapping[str, float]:
@@ -70,15 +80,27 @@ def is_solid(link: Link) -> bool:
     return bool(a > least and minor > least * a and volume > least * minor)
 
 
-def _first_dependent(tree: KinematicTree, seed: int) -> int | None:
-    """The coordinate at which the factorisation of M from the leaves fails, or None."""
+def _first_dependent(tree: KinematicTree, seed: int) -> tuple[int, float] | None:
+    """The coordinate at which the factorisation of M from the leaves fails, and its pivot; or None."""
     draw = random.Random(seed)
     q = [draw.uniform(-1, 1) for _ in tree.positions]
     for link in tree.links:
         if len(link.positions) > len(link.velocities):
             _normalise(q, [f.index for f in link.positions][-4:])
-    zero = [0.0] * len(tree.velocities)
-    return _failing_pivot(mass_matrix(tree, Floats(), arms(tree, Floats(), q, zero)))
+    crossed = arms(tree, Floats(), q, [0.0] * len(tree.velocities))
+    rows = mass_matrix(tree, Floats(), crossed)
+    return _failing_pivot(rows, _scales(tree, composites(tree, Floats(), crossed)), tree.outward)
+
+
+def _scales(tree: KinematicTree, carried: list[Moments]) -> list[float]:
+    """What each coordinate's inertia would be in the worst direction: zero is judged beside it."""
+    scales = [0.0] * len(tree.velocities)
+    for link, (mass, first, inertia) in zip(tree.links, carried, strict=True):
+        xx, _, _, yy, _, zz = inertia
+        largest = abs(mass) + sum(map(abs, first)) + abs(xx) + abs(yy) + abs(zz)
+        for freedom in link.velocities:
+            scales[freedom.index] += freedom.ratio**2 * largest
+    return scales
 
 
 def _normalise(q: list[float], places: Sequence[int]) -> None:
@@ -87,16 +109,19 @@ def _normalise(q: list[float], places: Sequence[int]) -> None:
         q[i] /= length
 
 
-def _failing_pivot(m: list[list[float]]) -> int | None:
-    """M = L^T D L from the last coordinate to the first: the first pivot that is not positive."""
+def _failing_pivot(
+    m: list[list[float]], scales: list[float], outward: list[int]
+) -> tuple[int, float] | None:
+    """M = L^T D L from the leaves to the root: the first pivot that is not positive, 0.0 for dust."""
     m = [list(row) for row in m]
-    scale = [m[i][i] for i in range(len(m))]
-    for k in reversed(range(len(m))):
-        if not m[k][k] > SINGULAR * abs(scale[k]):
-            return k
-        for i in range(k):
-            factor = m[k][i] / m[k][k]
-            for j in range(i + 1):
+    for place in reversed(range(len(m))):
+        k = outward[place]
+        pivot = m[k][k]
+        if not pivot > SINGULAR * scales[k]:
+            return k, pivot if pivot < -SINGULAR * scales[k] else 0.0
+        for i in outward[:place]:
+            factor = m[k][i] / pivot
+            for j in outward[:place]:
                 m[i][j] -= factor * m[k][j]
     return None
 

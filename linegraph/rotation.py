@@ -261,7 +261,7 @@ def z_onto(axis: Vector) -> Matrix:
     if a == 0 and b == 0 and c == -1:
         return ((1, 0, 0), (0, -1, 0), (0, 0, -1))
     # 1 / (1 + c), in the form that does not cancel where c is near -1
-    k = (1 - c) / (a * a + b * b) if isinstance(c, float) and c < 0 else 1 / (1 + c)
+    k = (1 - c) / (a * a + b * b) if isinstance(c, (int, float)) and c < 0 else 1 / (1 + c)
     return (
         (1 - k * a * a, -(k * a * b), a),
         (-(k * a * b), 1 - k * b * b, b),

@@ -68,6 +68,9 @@ class Symbolic:
         rates = [f"{name}_dot" if name in positions else name for name in rates]
         for name in {*positions, *rates} & parameters.keys():
             raise ModelError(f'parameter "{name}"', "has the name of a coordinate; rename one")
+        for name in {name for name in rates if name in positions}:
+            problem = "is the name of a coordinate and of a rate; rename a joint"
+            raise ModelError(f'coordinate "{name}"', problem)
         self.algebra = Sympy({"q": positions, "v": rates})
         self.tree: KinematicTree = plain
         self.q = sympy.Matrix([sympy.Symbol(name) for name in positions])
@@ -109,7 +112,9 @@ def simplified(expression: Expr) -> Expr:
 
 def _whole(expression: Expr) -> Expr:
     """Floats with integer values as integers: 2.0 x is 2 x to a reader."""
-    return expression.replace(lambda e: e.is_Float and e == int(e), lambda e: sympy.Integer(int(e)))
+    return expression.replace(
+        lambda e: e.is_Float and float(e).is_integer(), lambda e: sympy.Integer(int(e))
+    )
 
 
 def evaluate(expression: Expr, algebra: Algebra, parameters: Mapping[str, Scalar]) -> Scalar:
@@ -135,7 +140,7 @@ def evaluate(expression: Expr, algebra: Algebra, parameters: Mapping[str, Scalar
             return number(e)
         return _apply(e, [walk(part) for part in e.args], algebra)
 
-    return walk(sympy.sympify(expression))
+    return walk(sympy.sympify(expression, strict=True))
 
 
 def number(e: Expr) -> Scalar:
@@ -163,7 +168,7 @@ def power(base: Scalar, exponent: Expr, algebra: Algebra) -> Scalar:
     Raises:
         ModelError: any other exponent.
     """
-    twice = 2 * exponent
+    twice = 2 * (sympy.Rational(float(exponent)) if exponent.is_Float else exponent)
     if not twice.is_Integer or abs(twice) > 128:
         raise ModelError("", f"the power {exponent} has no counterpart in emitted code")
     whole, half = divmod(abs(int(twice)), 2)
