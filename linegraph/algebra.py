@@ -12,6 +12,7 @@ Numbers belong to every algebra.
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
@@ -53,3 +54,31 @@ class Floats:
     sin = staticmethod(math.sin)
     cos = staticmethod(math.cos)
     sqrt = staticmethod(math.sqrt)
+
+
+class Constants:
+    """Numbers by the standard library, symbols by sympy: what is known before an algebra is chosen."""
+
+    def symbol(self, argument: str, place: int | str | None = None) -> Scalar:
+        """There are none among constants."""
+        raise KeyError(argument)
+
+    def sin(self, x: Scalar) -> Scalar:
+        """Sine of an angle in radians."""
+        return _constant("sin", x)
+
+    def cos(self, x: Scalar) -> Scalar:
+        """Cosine of an angle in radians."""
+        return _constant("cos", x)
+
+    def sqrt(self, x: Scalar) -> Scalar:
+        """The non-negative square root."""
+        return _constant("sqrt", x)
+
+
+def _constant(function: str, x: Scalar) -> Scalar:
+    if isinstance(x, (int, float, Fraction)):
+        return getattr(math, function)(x)
+    import sympy
+
+    return getattr(sympy, function)(x)

@@ -12,12 +12,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from linegraph import vector
-from linegraph.algebra import Algebra, Floats
+from linegraph.algebra import Algebra, Constants
 from linegraph.body import GROUND, Body, Placement
 from linegraph.domains import TRANSLATION
 from linegraph.errors import ModelError
 from linegraph.joints import Joint, Moments
-from linegraph.parameters import is_number, resolver
+from linegraph.parameters import resolver
 from linegraph.rotation import IDENTITY_MATRIX, Rotation, product, rotation_of, snapped
 from linegraph.topology import Step, Topology, choose_forest
 from linegraph.vector import ZERO, Scalar, Vector
@@ -174,19 +174,10 @@ def inverse(placement: Placement) -> Placement:
 def moved(near: Placement, joint: Joint, value: Any, snap: float) -> Placement:
     """The head frame of a one-freedom joint at a fixed value of its coordinate."""
     alignment = Placement(ZERO, joint.alignment())
-    motion = joint.motion(_algebra_of(value), (value,), (0,))
+    motion = joint.motion(Constants(), (value,), (0,))
     turn = Placement(motion.displacement, snapped(motion.rotation.matrix(), snap))
     there = compose(compose(near, alignment, snap), turn, snap)
     return compose(there, inverse(alignment), snap)
-
-
-def _algebra_of(value: Any) -> Algebra:
-    """Where a constant angle is calculated: among floats, or a symbol's among sympy."""
-    if is_number(value):
-        return Floats()
-    from linegraph.symbols import Sympy
-
-    return Sympy()
 
 
 def mechanical_topology(model: Model, graph: SystemGraph) -> Topology:

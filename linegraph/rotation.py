@@ -7,11 +7,10 @@ planar factor costs 4 multiplications a vector and 8 a symmetric tensor, where a
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Protocol
 
+from linegraph.algebra import Constants
 from linegraph.vector import Matrix, Scalar, Vector, times, transpose
 
 Inertia = tuple[Scalar, Scalar, Scalar, Scalar, Scalar, Scalar]
@@ -247,12 +246,8 @@ def about(axis: Vector, angle: Scalar) -> Matrix:
 
 
 def _cos_sin(angle: Scalar) -> tuple[Scalar, Scalar]:
-    """Of a number by the standard library, of a symbol by sympy."""
-    if isinstance(angle, (int, float, Fraction)):
-        return math.cos(angle), math.sin(angle)
-    import sympy
-
-    return sympy.cos(angle), sympy.sin(angle)
+    constants = Constants()
+    return constants.cos(angle), constants.sin(angle)
 
 
 def z_onto(axis: Vector) -> Matrix:

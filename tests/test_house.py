@@ -1,0 +1,470 @@
+"""The house: layers, sizes, forbidden calls, documentation, the public face, and what imports cost.
+
+Each test lists all offenders at once. A new module must be given its layer below.
+"""
+
+from __future__ import annotations
+
+import ast
+import doctest
+import importlib
+import io
+import subprocess
+import sys
+import tokenize
+import types
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import pytest
+
+import linegraph
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+ROOT = Path(__file__).parent.parent
+PACKAGES = ("linegraph", "codegen")
+
+MOST_CODE_LINES = 60
+MOST_FILE_LINES = 400
+OVERSIZE: dict[str, str] = {}
+"""Files and functions that are bigger, each with its reason."""
+
+LAYERS: tuple[tuple[str, ...], ...] = (
+    ("errors", "version", "vector", "domains"),
+    ("algebra", "expression", "files", "graph"),
+    ("parameters", "program", "rotation", "topology"),
+    ("checks",),
+    ("body", "joints", "factorization"),
+    ("model",),
+    ("kinematics",),
+    ("orthogonality",),
+    ("articulated", "mass_matrix"),
+    ("paper", "regularity"),
+    ("symbols",),
+    ("derive",),
+    ("programs", "urdf"),
+    ("codegen",),
+    ("emission", "report"),
+    ("cli",),
+    ("__main__",),
+)
+"""From the ground up; a package counts as one. Modules of one layer do not import each other."""
+
+UPWARD = {
+    # user expressions are walked by sympy's side, which is loaded when there are some
+    ("parameters", "symbols"),
+    # locking a joint moves a frame by the joint's motion
+    ("model", "kinematics"),
+}
+"""Imports upwards, inside functions. The list is to shrink."""
+
+NO_PHYSICS = {"graph": {"errors"}, "topology": {"errors", "graph"}}
+CODEGEN_SEES = {"linegraph.program", "linegraph.expression", "linegraph.errors"}
+HEAVY = {"sympy", "networkx", "numpy", "jinja2", "lxml"}
+ONLY_THERE = {
+    "click": {"linegraph.cli"},
+    "jinja2": {"codegen.templates"},
+    "lxml": {"linegraph.urdf.document"},
+    "codegen": {"linegraph.emission", "linegraph.cli"},
+}
+FORBIDDEN = {"eval", "exec", "compile", "__import__", "parse_expr", "lambdify", "system", "popen"}
+NOT_STRICT = {"linegraph.body"}
+"""Modules that call `sympify` without `strict` or a comment. The list is to become empty."""
+FORBIDDEN_MODULES = {"pickle", "marshal", "shelve", "subprocess", "ctypes", "code"}
+
+
+class Import(NamedTuple):
+    """Module `source` imports module `target`; `lazy` inside a function, `typing` for types only."""
+
+    source: str
+    target: str
+    lazy: bool
+    typing: bool
+
+
+@cache
+def files() -> dict[str, Path]:
+    """Every module's file by its dotted name."""
+    found = {}
+    for package in PACKAGES:
+        for path in sorted((ROOT / package).rglob("*.py")):
+            parts = path.relative_to(ROOT).with_suffix("").parts
+            found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return found
+
+
+@cache
+def parsed(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+def imports(name: str, path: Path) -> Iterator[Import]:
+    """All imports of a module, those in functions and under TYPE_CHECKING too."""
+
+    def walk(node: ast.AST, lazy: bool, typing: bool) -> Iterator[Import]:
+        if isinstance(node, ast.Import):
+            yield from (Import(name, alias.name, lazy, typing) for alias in node.names)
+        if isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{name}: a relative import"
+            for alias in node.names:
+                whole = f"{node.module}.{alias.name}"
+                yield Import(name, whole if whole in files() else str(node.module), lazy, typing)
+        lazy = lazy or isinstance(node, ast.FunctionDef)
+        typing = typing or (isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING")
+        for child in ast.iter_child_nodes(node):
+            yield from walk(child, lazy, typing)
+
+    yield from walk(parsed(path), False, False)
+
+
+@cache
+def all_imports() -> list[Import]:
+    return [found for name, path in files().items() for found in imports(name, path)]
+
+
+def unit(module: str) -> str:
+    """The part of the house that a module is: ``linegraph.joints.free`` is joints."""
+    first, *rest = module.split(".")
+    return first if first == "codegen" or not rest else rest[0]
+
+
+def inside() -> list[Import]:
+    """Imports between parts of the house that happen at run time."""
+    return [
+        found
+        for found in all_imports()
+        if found.target.split(".")[0] in PACKAGES
+        and not found.typing
+        and found.source != "linegraph"
+        and unit(found.source) != unit(found.target)
+    ]
+
+
+# ---- layers
+
+
+def test_every_module_has_a_layer() -> None:
+    listed = [name for layer in LAYERS for name in layer]
+    assert len(listed) == len(set(listed))
+    assert {unit(name) for name in files()} - {"linegraph"} == set(listed)
+
+
+def test_imports_point_down() -> None:
+    level = {name: k for k, layer in enumerate(LAYERS) for name in layer}
+    upward = {
+        (unit(found.source), unit(found.target))
+        for found in inside()
+        if level.get(unit(found.target), -1) >= level[unit(found.source)]
+    }
+    assert upward == UPWARD
+
+
+def test_imports_upward_wait_for_their_function() -> None:
+    assert all(
+        found.lazy for found in inside() if (unit(found.source), unit(found.target)) in UPWARD
+    )
+
+
+@pytest.mark.parametrize("module", NO_PHYSICS)
+def test_graphs_know_no_physics(module: str) -> None:
+    seen = {found.target for found in all_imports() if found.source == f"linegraph.{module}"}
+    ours = {unit(target) for target in seen if target.startswith("linegraph")}
+    assert ours <= NO_PHYSICS[module]
+
+
+def test_codegen_sees_programs_only() -> None:
+    seen = {
+        found.target
+        for found in all_imports()
+        if found.source.startswith("codegen") and found.target.startswith("linegraph")
+    }
+    assert seen <= CODEGEN_SEES
+
+
+def test_joint_types_know_the_base_and_not_each_other() -> None:
+    folder = {name for name in files() if name.startswith("linegraph.joints.")}
+    for found in all_imports():
+        if found.source in folder and found.target in folder:
+            assert found.target == "linegraph.joints.base", found
+
+
+@pytest.mark.parametrize("package", ONLY_THERE)
+def test_libraries_stay_where_they_are_wrapped(package: str) -> None:
+    users = {
+        found.source
+        for found in all_imports()
+        if found.target.split(".")[0] == package and not found.source.startswith(package)
+    }
+    assert users <= ONLY_THERE[package]
+
+
+def test_heavy_libraries_are_imported_where_they_are_used() -> None:
+    """At the top of a file only where the whole file is about them."""
+    early = {
+        (found.source, found.target.split(".")[0])
+        for found in all_imports()
+        if found.target.split(".")[0] in HEAVY and not found.lazy and not found.typing
+    }
+    assert early <= {
+        ("linegraph.symbols", "sympy"),
+        ("codegen.templates", "jinja2"),
+        ("linegraph.urdf.document", "lxml"),
+    }
+
+
+# ---- sizes
+
+
+def functions(path: Path) -> Iterator[ast.FunctionDef]:
+    for node in ast.walk(parsed(path)):
+        if isinstance(node, ast.FunctionDef):
+            yield node
+
+
+def code_lines(path: Path) -> set[int]:
+    """Lines that hold code: no blanks, no comments."""
+    skip = {
+        tokenize.COMMENT,
+        tokenize.NL,
+        tokenize.NEWLINE,
+        tokenize.INDENT,
+        tokenize.DEDENT,
+        tokenize.ENDMARKER,
+    }
+    lines: set[int] = set()
+    for token in tokenize.generate_tokens(io.StringIO(path.read_text(encoding="utf-8")).readline):
+        if token.type not in skip:
+            lines.update(range(token.start[0], token.end[0] + 1))
+    return lines
+
+
+def size(function: ast.FunctionDef, lines: set[int]) -> int:
+    """Code lines of a function, its docstring not counted."""
+    own = set(range(function.lineno, int(function.end_lineno or 0) + 1)) & lines
+    first = function.body[0]
+    if ast.get_docstring(function) is not None:
+        own -= set(range(first.lineno, int(first.end_lineno or 0) + 1))
+    return len(own)
+
+
+def test_functions_are_short() -> None:
+    long = {}
+    for name, path in files().items():
+        lines = code_lines(path)
+        for function in functions(path):
+            if (count := size(function, lines)) > MOST_CODE_LINES:
+                long[f"{name}.{function.name}"] = count
+    assert {k: n for k, n in long.items() if k not in OVERSIZE} == {}
+
+
+def test_files_are_short() -> None:
+    counts = {
+        name: len(path.read_text(encoding="utf-8").splitlines()) for name, path in files().items()
+    }
+    long = {name: n for name, n in counts.items() if n > MOST_FILE_LINES}
+    assert {name: n for name, n in long.items() if name not in OVERSIZE} == {}
+
+
+RULED = '''def f(x):
+    """One.
+
+    Two.
+    """
+    # three
+
+    y = (
+        x
+    )
+    return y
+'''
+
+
+def test_the_ruler_measures(tmp_path: Path) -> None:
+    path = tmp_path / "ruled.py"
+    path.write_text(RULED, encoding="utf-8")
+    (function,) = functions(path)
+    assert code_lines(path) == {1, 2, 3, 4, 5, 8, 9, 10, 11}
+    assert size(function, code_lines(path)) == 5
+
+
+# ---- calls
+
+
+def called(call: ast.Call) -> str:
+    function = call.func
+    if isinstance(function, ast.Attribute):
+        return function.attr
+    return function.id if isinstance(function, ast.Name) else ""
+
+
+def calls() -> Iterator[tuple[str, ast.Call]]:
+    for name, path in files().items():
+        for node in ast.walk(parsed(path)):
+            if isinstance(node, ast.Call):
+                yield f"{name}:{node.lineno}", node
+
+
+def of_re(call: ast.Call) -> bool:
+    """``re.compile`` compiles no code."""
+    function = call.func
+    return isinstance(function, ast.Attribute) and ast.unparse(function.value) == "re"
+
+
+def test_nothing_runs_text() -> None:
+    found = [
+        place
+        for place, call in calls()
+        if (called(call) in FORBIDDEN and not of_re(call))
+        or any(word.arg == "shell" for word in call.keywords)
+    ]
+    assert found == []
+    modules = {found.target.split(".")[0] for found in all_imports()}
+    assert modules & FORBIDDEN_MODULES == set()
+
+
+def test_sympify_says_that_it_takes_no_text() -> None:
+    """`sympify` evaluates strings unless it is strict: it is strict, or a comment says what it is given."""
+    found = []
+    for place, call in calls():
+        if called(call) not in ("sympify", "S"):
+            continue
+        name, line = place.split(":")
+        text = files()[name].read_text(encoding="utf-8").splitlines()
+        commented = "#" in "".join(text[int(line) - 2 : int(line)])
+        strict = any(word.arg == "strict" for word in call.keywords)
+        if not (strict or commented or name == "linegraph.symbols"):
+            found.append(name)
+    assert set(found) == NOT_STRICT
+
+
+def test_only_the_command_line_prints() -> None:
+    found = [
+        place
+        for place, call in calls()
+        if called(call) in ("print", "echo", "secho") and not place.startswith("linegraph.cli:")
+    ]
+    streams = [
+        f"{name}:{node.lineno}"
+        for name, path in files().items()
+        for node in ast.walk(parsed(path))
+        if isinstance(node, ast.Attribute)
+        and node.attr in ("stdout", "stderr")
+        and name != "linegraph.cli"
+    ]
+    assert found + streams == []
+
+
+def test_the_search_for_calls_finds_them() -> None:
+    tree = ast.parse(
+        "import os\nos.system('x')\nre.compile('x')\nfoo(shell=True)\nprint(eval('1'))"
+    )
+    found = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+    assert {called(call) for call in found} == {"system", "compile", "foo", "print", "eval"}
+    assert [called(call) for call in found if of_re(call)] == ["compile"]
+
+
+# ---- documentation
+
+
+def undocumented(node: ast.AST, prefix: str) -> Iterator[str]:
+    for child in ast.iter_child_nodes(node):
+        if not isinstance(child, ast.ClassDef | ast.FunctionDef) or child.name.startswith("_"):
+            continue
+        setter = any(ast.unparse(d).endswith(".setter") for d in child.decorator_list)
+        if ast.get_docstring(child) is None and not setter:
+            yield f"{prefix}.{child.name}"
+        if isinstance(child, ast.ClassDef):
+            yield from undocumented(child, f"{prefix}.{child.name}")
+
+
+def test_all_that_is_public_has_a_docstring() -> None:
+    missing = [name for name, path in files().items() if ast.get_docstring(parsed(path)) is None]
+    for name, path in files().items():
+        missing += undocumented(parsed(path), name)
+    assert missing == []
+
+
+def test_the_search_for_docstrings_finds_them() -> None:
+    tree = ast.parse(
+        "def f(): pass\nclass A:\n    'doc'\n    def g(self): pass\n    def _h(self): pass\n"
+    )
+    assert list(undocumented(tree, "m")) == ["m.f", "m.A.g"]
+
+
+@pytest.mark.parametrize("module", [name for name in files() if not name.endswith("__main__")])
+def test_examples_in_docstrings_hold(module: str) -> None:
+    tests = doctest.DocTestFinder(exclude_empty=True).find(importlib.import_module(module))
+    report = io.StringIO()
+    runner = doctest.DocTestRunner(optionflags=doctest.FAIL_FAST)
+    for test in tests:
+        runner.run(test, out=report.write)
+    assert runner.failures == 0, report.getvalue()
+
+
+def test_enough_examples_are_found() -> None:
+    finder = doctest.DocTestFinder(exclude_empty=True)
+    examples = [
+        example
+        for name in files()
+        if not name.endswith("__main__")
+        for test in finder.find(importlib.import_module(name))
+        for example in test.examples
+    ]
+    assert len(examples) > 30
+
+
+# ---- the public face
+
+
+def test_the_public_names_are_those_listed() -> None:
+    assert linegraph.__all__ == sorted(linegraph.__all__)
+    public = {
+        name
+        for name, value in vars(linegraph).items()
+        if not name.startswith("_") and not isinstance(value, types.ModuleType)
+    }
+    # loading a submodule of a function's name would put the module in the function's place
+    assert public | {"__version__"} == set(linegraph.__all__)
+    assert all(not isinstance(getattr(linegraph, n), types.ModuleType) for n in linegraph.__all__)
+
+
+def fresh(script: str) -> str:
+    """What a fresh interpreter prints."""
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+LOADED = f"; import sys; print([m for m in {sorted(HEAVY)} if m in sys.modules])"
+
+
+def test_importing_linegraph_loads_nothing_heavy() -> None:
+    assert fresh("import linegraph" + LOADED).strip() == "[]"
+
+
+def test_asking_for_help_loads_nothing_heavy() -> None:
+    script = "from linegraph.cli import main; main(['--help'], standalone_mode=False)"
+    assert fresh(script + LOADED).strip().endswith("[]")
+    script = "from linegraph.cli import main; main(['emit', '--help'], standalone_mode=False)"
+    assert fresh(script + LOADED).strip().endswith("[]")
+
+
+def test_deriving_from_python_loads_nothing_heavy() -> None:
+    script = (
+        "from linegraph import Model, derive; m = Model('m'); b = m.body('b', mass=1);"
+        "m.prismatic('j', between=('ground', b)); derive(m).numeric().mass_matrix([0.1])"
+    )
+    assert fresh(script + LOADED).strip() == "[]"
+
+
+def test_emitting_loads_templates_only() -> None:
+    script = (
+        "from linegraph import Model; from linegraph.emission import render; m = Model('m');"
+        "m.prismatic('j', between=('ground', m.body('b', mass=1))); render(m)"
+    )
+    assert fresh(script + LOADED).strip() == "['jinja2']"
