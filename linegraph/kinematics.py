@@ -211,17 +211,19 @@ def kinematic_tree(
     """
     resolve = resolver(algebra, parameters)
     state = _State(model, resolve)
-    for quantities in (state.positions, state.velocities):
-        names = [quantity.name for quantity in quantities]
-        for name in (
-            {name for name in names if names.count(name) > 1}
-            if len(set(names)) < len(names)
-            else ()
-        ):
-            raise ModelError(
-                f'coordinate "{name}"', "two coordinates have this name; rename a joint"
-            )
+    _require_unique(state.positions)
+    _require_unique(state.velocities)
     return _Walk(model, state, resolve).along(topology.walk)
+
+
+def _require_unique(quantities: list[Quantity]) -> None:
+    """Refuse two coordinates of one name: readers and inputs could not tell them apart."""
+    seen: set[str] = set()
+    for quantity in quantities:
+        if quantity.name in seen:
+            problem = "two coordinates have this name; rename a joint"
+            raise ModelError(f'coordinate "{quantity.name}"', problem)
+        seen.add(quantity.name)
 
 
 class _State:

@@ -19,6 +19,7 @@ import sympy
 from spec_models import model_of
 
 from linegraph import Derivation, Model, derive, orthogonality
+from linegraph import mass_matrix as columns_of_mass
 from linegraph.algebra import Floats
 from linegraph.articulated import forward_dynamics
 from linegraph.derive import Numeric
@@ -215,7 +216,7 @@ def test_columns_carried_by_frames_or_in_ground_are_the_same(
 ) -> None:
     spec, _, numeric, states = case(seed)
     for cheaper in (True, False):
-        monkeypatch.setattr(orthogonality, "ground_is_cheaper", lambda *_, c=cheaper: c)
+        monkeypatch.setattr(columns_of_mass, "ground_is_cheaper", lambda *_, c=cheaper: c)
         for q, v, _ in states:
             expected = oracle.mass_matrix(spec, q, v)
             assert error(numeric.mass_matrix(floats(q)), expected) < EQUATIONS
@@ -377,6 +378,35 @@ def test_programs_over_the_dag_have_the_numbers_of_the_floats(seed: int) -> None
         efforts[actuated] = a[actuated]
         found = dag_values.run(module, "forward_dynamics", q=q_, v=v_, u=floats(a[actuated]))["a"]
         assert error(found, oracle.forward_dynamics(spec, q, v, efforts)) < SOLVED
+
+
+LABELS = {
+    "mass_matrix": {"carried by turn -> arm", "mass matrix, swing -> rod"},
+    "bias": {"joint swing", "motion, turn -> arm", "forces, swing -> rod"},
+    "inverse_dynamics": {"forces, x -> cart"},
+    "energy": {"kinetic energy, x -> cart", "potential energy, swing -> rod"},
+    "coordinate_rates": set(),
+}
+
+
+@pytest.mark.parametrize("name", LABELS)
+def test_nodes_are_labelled_with_the_part_they_were_derived_for(name: str) -> None:
+    """What comments in emitted code are made of: no operation without a label."""
+    module = module_of(derive(symbolic_model()), "m", folded=True, about=())
+    program = next(program for program in module.programs if program.name == name)
+    roots = [entry for result in program.results for entry in result.entries]
+    labels = {n.label for n in dag_values.reached(roots) if n.op not in ("symbol", "neg")}
+    assert labels >= LABELS[name]
+    assert all(label.endswith(("x", "turn", "swing", "cart", "arm", "rod")) for label in labels)
+
+
+def test_articulated_inertias_label_their_nodes() -> None:
+    dag = Dag()
+    tree = derive(symbolic_model()).tree(dag, dict.fromkeys(symbolic_model().parameters, 1.5))
+    q, v, u = ([dag.symbol(name, i) for i in range(3)] for name in "qvu")
+    solution = forward_dynamics(tree, dag, orthogonality.arms(tree, dag, q, v), u)
+    labels = {n.label for n in dag_values.reached(solution.unknowns) if n.op != "symbol"}
+    assert {"articulated inertia, swing -> rod", "accelerations, turn -> arm"} <= labels
 
 
 def symbolic_model() -> Model:

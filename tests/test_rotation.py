@@ -142,7 +142,7 @@ def test_a_product_is_the_product_of_its_factors(seed: int) -> None:
     close(whole.matrix(), m)
     close((whole @ whole.inverse()).matrix(), E3)
     inner = Rotation((random_factor(rng),))
-    close((whole @ inner).matrix(), m @ matrix_of(inner.factors[0]), atol=EXACT)
+    close((whole @ inner).matrix(), m @ matrix_of(inner.factors[0]))
     close(product(rows(m), inner.matrix()), m @ inner.matrix())
 
 

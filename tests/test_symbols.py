@@ -53,6 +53,9 @@ def check(expression: Any, expected: float) -> None:
         (x ** sympy.Rational(-1, 2), 1.7**-0.5),
         (x ** sympy.Rational(-5, 2), 1.7**-2.5),
         (sympy.sqrt(2), math.sqrt(2)),
+        (x**0.5, math.sqrt(1.7)),
+        (x**2.0, 1.7 * 1.7),
+        (x**-1.5, 1.7**-1.5),
         (sympy.sqrt(x**2 + y**2), math.hypot(1.7, -0.6)),
         (sympy.sin(x), math.sin(1.7)),
         (sympy.cos(x - y), math.cos(2.3)),
@@ -110,6 +113,12 @@ def test_an_undeclared_symbol_is_named(expression: Any) -> None:
 def test_what_emitted_code_has_no_word_for_is_refused(expression: Any, message: str) -> None:
     with pytest.raises(ModelError, match=message):
         evaluate(expression, Floats(), VALUES)
+
+
+@pytest.mark.parametrize("text", ["x + 1", "__import__('os').getpid()", ""])
+def test_text_is_never_evaluated(text: str) -> None:
+    with pytest.raises((sympy.SympifyError, ModelError)):
+        evaluate(text, Floats(), VALUES)
 
 
 # ---- parameters
@@ -230,5 +239,7 @@ def test_the_algebra_of_sympy_names_its_symbols() -> None:
 def test_simplified_expands_merges_and_collects() -> None:
     assert simplified(sympy.sin(x) ** 2 + sympy.cos(x) ** 2) == 1
     assert simplified(0) == 0
+    assert simplified(2.0 * x) == 2 * x
+    assert not simplified(2.0 * x + 4.0 * y).atoms(sympy.Float)
     kept = simplified(0.25 * x)
     assert kept == 0.25 * x
