@@ -31,6 +31,9 @@ def vector(given: Any, who: str) -> Vector:
         ModelError: another length, or an infinity or NaN.
     """
     parts = listed(given)
+    if isinstance(parts, list):
+        # a column matrix is a list of lists of one
+        parts = [p[0] if isinstance(p, list) and len(p) == 1 else p for p in map(listed, parts)]
     if not isinstance(parts, list) or len(parts) != 3:
         count = len(parts) if isinstance(parts, list) else "one number"
         raise ModelError(who, f"three components are needed, got {count}")

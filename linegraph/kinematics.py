@@ -186,6 +186,8 @@ def mechanical_topology(model: Model, graph: SystemGraph) -> Topology:
     Raises:
         ModelError: a joint closes a loop, or a body hangs on nothing.
     """
+    if not model.bodies:
+        raise ModelError(f'model "{model.name}"', "has no bodies: there is nothing to derive")
     weights = {joint.name: float(joint.freedoms) for joint in model.joints}
     weights |= {f"{name}/inertia": 7.0 for name in model.bodies}
     projection = graph[TRANSLATION.name]
@@ -319,7 +321,7 @@ class _Walk:
         if joint.freedoms == 0:
             self._enter(body, parent, self._compose(near, inverse(far)))
             return
-        alignment = self._constant(Placement(ZERO, joint.alignment()))
+        alignment = self._alignment(joint)
         near = self._compose(near, alignment)
         positions, velocities = self._state.places(joint)
         link = Link(
@@ -339,6 +341,15 @@ class _Walk:
         moments = joined(link.moments, carried(own, rotation_of(pose.rotation), pose.at))
         name = f"{link.name}, {body}" if link.name else body
         self._links[index] = replace(link, name=name, moments=moments)
+
+    def _alignment(self, joint: Joint) -> Placement:
+        try:
+            return self._constant(Placement(ZERO, joint.alignment()))
+        except ModelError as error:
+            if error.thing:
+                raise
+            problem = f"its axis cannot be a direction: {error.problem}"
+            raise ModelError(f'joint "{joint.name}"', problem) from None
 
     def _constant(self, placement: Placement) -> Placement:
         rows = (_resolved(row, self._resolve) for row in placement.rotation)

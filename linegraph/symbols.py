@@ -175,7 +175,11 @@ def power(base: Scalar, exponent: Expr, algebra: Algebra) -> Scalar:
     result: Scalar = algebra.sqrt(base) if half else 1
     for _ in range(whole):
         result = result * base
-    return 1 / result if exponent.is_negative else result
+    if not exponent.is_negative:
+        return result
+    if isinstance(result, (int, float)) and result == 0:
+        raise ModelError("", "a division by zero at the parameters' values")
+    return 1 / result
 
 
 def to_sympy(node: Scalar, dag: Dag, names: Mapping[str, Iterable[str]]) -> Expr:
