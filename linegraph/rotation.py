@@ -7,6 +7,7 @@ planar factor costs 4 multiplications a vector and 8 a symmetric tensor, where a
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -202,12 +203,19 @@ def rotation_of(m: Matrix) -> Rotation:
     return Rotation((Full(m),))
 
 
+_ROOTS = (math.sqrt(0.5), math.sqrt(0.75))
+_EXACT = (0, 1, -1, 0.5, -0.5, *_ROOTS, *(-x for x in _ROOTS))
+
+
 def snapped(m: Matrix, within: float) -> Matrix:
-    """Numbers closer than `within` to 0, 1, -1, 1/2 or -1/2 replaced by these exactly."""
+    """Numbers closer than `within` to 0, 1, -1, 1/2 or -1/2 replaced by these exactly.
+
+    So are their partners in a turn by 45, 30 or 60 degrees, or the matrix would lose its orthogonality.
+    """
 
     def snap(x: Scalar) -> Scalar:
         if isinstance(x, float):
-            for exact in (0, 1, -1, 0.5, -0.5):
+            for exact in _EXACT:
                 if abs(x - exact) <= within:
                     return exact
         return x
