@@ -191,7 +191,7 @@ def build(dag: Dag, seed: int, size: int = 60) -> list[Any]:
     pool: list[Any] = [*symbols(dag), 0, 1, -1, 2, 0.5, Fraction(1, 3)]
     for _ in range(size):
         x, y = draw.choice(pool), draw.choice(pool)
-        make = draw.choice(
+        make: Any = draw.choice(
             [
                 lambda x, y: x + y,
                 lambda x, y: x - y,
@@ -268,7 +268,7 @@ def test_rational_expressions_have_exactly_the_value_of_pythons_arithmetic(seed:
     """Built twice, over nodes and over fractions: not one rule changes a value."""
     draw = random.Random(seed)
     numbers = [Fraction(draw.randint(-9, 9), draw.randint(1, 9)) for _ in range(4)]
-    constants = [0, 1, -1, 2, Fraction(-2, 3), Fraction(5)]
+    constants: list[Any] = [0, 1, -1, 2, Fraction(-2, 3), Fraction(5)]
     pairs: list[tuple[Any, Fraction]] = [
         *zip(symbols(Dag()), numbers, strict=True),
         *((c, Fraction(c)) for c in constants),

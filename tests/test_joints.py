@@ -300,7 +300,7 @@ def pair(kind: str, forward: bool, rng: np.random.Generator) -> Model:
         handle.frame(
             "end",
             at=rng.normal(size=3).tolist(),
-            rotation=tuple(tuple(row) for row in trees.random_rotation(rng).tolist()),  # type: ignore[arg-type]
+            rotation=tuple(tuple(row) for row in trees.random_rotation(rng).tolist()),
         )
         for handle in handles
     ]
@@ -327,7 +327,7 @@ def test_regrouping_keeps_the_mass_matrix_and_the_bias(kind: str, forward: bool,
     for _ in range(2):
         q, v = pair_state(tree, rng)
         whole, fewer = arms(tree, Floats(), q, v), arms(short, Floats(), q, v)
-        m = np.array(mass_matrix(tree, Floats(), whole))
+        m: NDArray[np.float64] = np.array(mass_matrix(tree, Floats(), whole))
         h = np.array(inverse_dynamics(tree, Floats(), whole))
         near(np.array(mass_matrix(short, Floats(), fewer)), m)
         near(np.array(inverse_dynamics(short, Floats(), fewer)), h)

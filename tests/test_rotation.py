@@ -43,7 +43,7 @@ def relabels() -> list[Relabel]:
     for source in itertools.permutations(range(3)):
         for signs in itertools.product((1, -1), repeat=3):
             if np.linalg.det(np.diag(signs) @ E3[list(source)]) > 0:
-                found.append(Relabel(source, signs))
+                found.append(Relabel(source, signs))  # type: ignore[arg-type]
     return found
 
 
@@ -276,7 +276,7 @@ def test_a_turn_about_a_direction_keeps_it_and_turns_the_rest(seed: int) -> None
     axis = rng.normal(size=3)
     axis /= np.linalg.norm(axis)
     angle = float(rng.uniform(-np.pi, np.pi))
-    m = np.array(about(tuple(axis.tolist()), angle))
+    m: NDArray[np.float64] = np.array(about(tuple(axis.tolist()), angle))
     close(m @ axis, axis)
     close(m @ m.T, E3)
     assert np.trace(m) == pytest.approx(1 + 2 * math.cos(angle), abs=EXACT)
