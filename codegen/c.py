@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from codegen import layout, prose, templates
 from codegen.printer import Notation, number, print_program
+from linegraph.functions import ARITY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -35,13 +36,11 @@ def render(module: Module) -> dict[str, str]:
         ],
         **common,
     )
-    source = templates.fill(
-        "c/source.c.jinja",
-        functions=[
-            (_signature(module, x, statuses), _body(module, x, statuses)) for x in module.programs
-        ],
-        **common,
-    )
+    functions = [
+        (_signature(module, x, statuses), _body(module, x, statuses)) for x in module.programs
+    ]
+    sign = any(_FUNCTIONS["sign"] in line for _, body in functions for line in body)
+    source = templates.fill("c/source.c.jinja", functions=functions, sign=sign, **common)
     return {f"{module.name}.h": header, f"{module.name}.c": source}
 
 
@@ -165,11 +164,14 @@ def _check(value: str, bound: str, check: Check) -> list[str]:
     ]
 
 
+_RENAMED = {"abs": "fabs", "min": "fmin", "max": "fmax", "sign": "sign_of"}
+_FUNCTIONS = {name: f"{_RENAMED.get(name, name)}(" for name in ARITY}
+
 _NOTATION = Notation(
     before="    const double ",
     after=";",
     member="p->",
-    function="",
+    functions=_FUNCTIONS,
     comment=lambda label: f"    /* {comment(label)} */",
     check=_check,
 )

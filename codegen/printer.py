@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from linegraph.errors import ModelError
-from linegraph.expression import ADD, DIV, FUNCTIONS, MUL, NEG, SUB, SYMBOL, Node
+from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL, Node
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from linegraph.expression import Number, Operand
     from linegraph.program import Check, Program
@@ -40,7 +40,7 @@ class Notation:
         before: what stands before the name in an assignment, indentation included.
         after: what ends an assignment.
         member: what gives access to a parameter, e.g. ``p->``.
-        function: what stands before the name of a function.
+        functions: what each function is called, its bracket included.
         comment: the line that says a label.
         check: the lines that stop the function unless the first text is greater than the second.
     """
@@ -48,7 +48,7 @@ class Notation:
     before: str
     after: str
     member: str
-    function: str
+    functions: Mapping[str, str]
     comment: Callable[[str], str]
     check: Callable[[str, str, Check], list[str]]
 
@@ -103,7 +103,6 @@ class _Printer:
         self.turned = program.turned
         self.known: dict[int, str] = {}
         self.used: set[str] = set()
-        self.prefixes = {name: f"{notation.function}{name}(" for name in FUNCTIONS}
 
     def assignments(self, program: Program) -> list[str]:
         """One line for each step, a comment where the label changes, checks as early as can be."""
@@ -187,7 +186,8 @@ class _Printer:
         if op == SYMBOL:
             return self.symbol(node), _ATOM
         if op != NEG:
-            return f"{self.prefixes[op]}{self.text(a)})", _ATOM
+            second = "" if node.b is None else f", {self.text(node.b)}"
+            return f"{self.notation.functions[op]}{self.text(a)}{second})", _ATOM
         if a.index in self.turned:
             known = self.known.get(a.index)
             return self.expression(a) if known is None else (known, _ATOM)

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 
 from codegen import layout, prose, templates
 from codegen.printer import Notation, number, print_program
+from linegraph.functions import ARITY
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from linegraph.program import Argument, Check, Module, Program, Quantity, Result
 
@@ -23,8 +24,11 @@ _WIDTH = 96
 def render(module: Module) -> dict[str, str]:
     """The one file of a module."""
     statuses = layout.statuses(module)
+    bodies = {program.name: _body(program) for program in module.programs}
     text = templates.fill(
         "python/module.py.jinja",
+        unary=_called(bodies, 1),
+        binary=_called(bodies, 2),
         name=module.name,
         head=_indented(layout.head(module), 0),
         counts=list(layout.counts(module).items()),
@@ -41,12 +45,32 @@ def render(module: Module) -> dict[str, str]:
                 "arguments": ", ".join(argument.name for argument in program.arguments),
                 "document": _document(module, program, statuses[program.name]),
                 "wrapper": _wrapper(module, program),
-                "body": _body(program),
+                "body": bodies[program.name],
             }
             for program in module.programs
         ],
     )
     return {f"{module.name}.py": text}
+
+
+_NUMPY = {
+    "asin": "arcsin",
+    "acos": "arccos",
+    "atan": "arctan",
+    "atan2": "arctan2",
+    "min": "minimum",
+    "max": "maximum",
+}
+
+
+def _called(bodies: Mapping[str, Sequence[str]], arity: int) -> list[tuple[str, str]]:
+    """The functions of so many arguments that the module calls, and NumPy's names for them."""
+    text = "\n".join(line for body in bodies.values() for line in body)
+    return [
+        (name, _NUMPY.get(name, name))
+        for name, count in ARITY.items()
+        if count == arity and f"_{name}(" in text
+    ]
 
 
 def literal(text: str) -> str:
@@ -169,7 +193,7 @@ _NOTATION = Notation(
     before="    ",
     after="",
     member="p.",
-    function="_",
+    functions={name: f"_{name}(" for name in ARITY},
     comment=lambda label: f"    # -- {prose.plain(label)}",
     check=_check,
 )

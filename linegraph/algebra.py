@@ -15,6 +15,9 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, Protocol
 
+from linegraph.errors import ModelError
+from linegraph.functions import of_numbers
+
 if TYPE_CHECKING:
     from linegraph.vector import Scalar
 
@@ -34,6 +37,9 @@ class Algebra(Protocol):
     def sqrt(self, x: Scalar) -> Scalar:
         """The non-negative square root."""
 
+    def function(self, name: str, *x: Scalar) -> Scalar:
+        """Any function of `functions.ARITY`."""
+
 
 class Floats:
     """Double precision: the algebra in which a derivation simply computes.
@@ -44,16 +50,20 @@ class Floats:
 
     def __init__(self, **arguments: Scalar) -> None:
         """Keep the numbers that `symbol` looks up."""
-        self._arguments = arguments
+        self.arguments = arguments
 
     def symbol(self, argument: str, place: int | str | None = None) -> Scalar:
         """The number given for this place."""
-        given = self._arguments[argument]
+        given = self.arguments[argument]
         return given if place is None else given[place]
 
     sin = staticmethod(math.sin)
     cos = staticmethod(math.cos)
     sqrt = staticmethod(math.sqrt)
+
+    def function(self, name: str, *x: Scalar) -> Scalar:
+        """Any function of `functions.ARITY`."""
+        return of_numbers(name, *x)
 
 
 class Constants:
@@ -75,10 +85,17 @@ class Constants:
         """The non-negative square root."""
         return _constant("sqrt", x)
 
+    def function(self, name: str, *x: Scalar) -> Scalar:
+        """Any function of `functions.ARITY`; of numbers only."""
+        return of_numbers(name, *x)
+
 
 def _constant(function: str, x: Scalar) -> Scalar:
     if isinstance(x, (int, float, Fraction)):
         return getattr(math, function)(x)
+    if isinstance(x, str):
+        # sympy would run it
+        raise ModelError("", "an angle takes numbers, parameters or sympy expressions, not text")
     import sympy
 
     return getattr(sympy, function)(x)

@@ -13,14 +13,14 @@ nothing. Numbering follows the order of construction, so equal input gives equal
 
 from __future__ import annotations
 
-import math
 from fractions import Fraction
 from typing import Any, TypeAlias
+
+from linegraph.functions import of_numbers
 
 Number: TypeAlias = int | float | Fraction
 
 SYMBOL, NEG, ADD, SUB, MUL, DIV = "symbol", "neg", "add", "sub", "mul", "div"
-FUNCTIONS = ("sin", "cos", "sqrt")
 
 
 class Node:
@@ -120,6 +120,15 @@ class Dag:
         """The non-negative square root."""
         return self._function("sqrt", x)
 
+    def function(self, name: str, *x: Operand) -> Operand:
+        """Any function of `functions.ARITY`."""
+        numbers = [part for part in x if not isinstance(part, Node)]
+        if len(numbers) == len(x):
+            return of_numbers(name, *numbers)
+        if name in ("sin", "cos"):
+            return self._function(name, x[0])
+        return self._node(name, x[0], x[1] if len(x) > 1 else None)
+
     def negate(self, x: Operand) -> Operand:
         """``-x``, with a double negation cancelled and a constant factor's sign turned."""
         if not isinstance(x, Node):
@@ -205,7 +214,7 @@ class Dag:
 
     def _function(self, name: str, x: Operand) -> Operand:
         if not isinstance(x, Node):
-            return fold(name, x)
+            return of_numbers(name, x)
         if x.op == NEG and name == "cos":
             return self._node(name, x.a, None)
         if x.op == NEG and name == "sin":
@@ -222,9 +231,3 @@ class Dag:
         if node is None:
             node = self._known[key] = Node(self, op, a, b)
         return node
-
-
-def fold(function: str, x: Number) -> Number:
-    """A function of a number: exact where it is (sin 0 = 0), a float elsewhere."""
-    y = getattr(math, function)(x)
-    return int(y) if y in (0, 1, -1) and x in (0, 1) else float(y)

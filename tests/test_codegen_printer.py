@@ -9,13 +9,14 @@ import pytest
 
 from codegen.printer import Body, Notation, number, print_program
 from linegraph.expression import Dag, Node, Operand
+from linegraph.functions import ARITY
 from linegraph.program import Argument, Check, Program, Result, assemble
 
 PLAIN = Notation(
     before="",
     after="",
     member="p.",
-    function="",
+    functions={name: f"{name}(" for name in ARITY},
     comment=lambda label: f"# {label}",
     check=lambda value, bound, check: [f"check {check.status}: {value} > {bound}"],
 )

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from dag_values import reached, value, values
 
-from linegraph.expression import Dag, Node, fold
+from linegraph import ModelError
+from linegraph.expression import Dag, Node
+from linegraph.functions import ARITY, of_numbers
 from linegraph.program import INLINE_LIMIT, Argument, Check, Program, Result, assemble
 
 if TYPE_CHECKING:
@@ -156,13 +158,46 @@ def test_of_two_opposite_differences_one_is_computed() -> None:
 
 def test_an_integral_fold_is_exact_and_any_other_is_a_float() -> None:
     for name, x, expected in (("sin", 0, 0), ("cos", 0, 1), ("sqrt", 0, 0), ("sqrt", 1, 1)):
-        found = fold(name, x)
+        found = of_numbers(name, x)
         assert found == expected
         assert isinstance(found, int)
-    assert fold("sin", math.pi / 2) == 1.0
-    assert isinstance(fold("sin", math.pi / 2), float)
-    assert fold("sqrt", Fraction(1, 4)) == 0.5
-    assert fold("cos", 1) == math.cos(1)
+    assert of_numbers("sin", math.pi / 2) == 1.0
+    assert isinstance(of_numbers("sin", math.pi / 2), float)
+    assert of_numbers("sqrt", Fraction(1, 4)) == 0.5
+    assert of_numbers("cos", 1) == math.cos(1)
+    for name, x in (("exp", 0), ("cosh", 0), ("sign", 1), ("abs", 1)):
+        assert of_numbers(name, x) == 1
+        assert isinstance(of_numbers(name, x), int)
+
+
+REFERENCE: dict[str, Callable[..., float]] = {
+    "abs": math.fabs,
+    "min": min,
+    "max": max,
+    "sign": lambda x: math.copysign(1.0, x),
+}
+
+
+@pytest.mark.parametrize("name", ARITY)
+def test_every_function_is_known_over_nodes_and_numbers(name: str) -> None:
+    """A known argument is folded, an unknown one kept and shared, whatever the function."""
+    x = (0.37, -1.2)[: ARITY[name]]
+    expected = REFERENCE.get(name) or getattr(math, name)
+    assert of_numbers(name, *x) == expected(*x)
+    dag = Dag()
+    assert dag.function(name, *x) == expected(*x)
+    unknown = symbols(dag)[: ARITY[name]]
+    node = dag.function(name, *unknown)
+    assert isinstance(node, Node)
+    assert node.op == name
+    assert dag.function(name, *unknown) is node
+    assert (node.a, node.b) == (unknown[0], unknown[1] if len(unknown) > 1 else None)
+
+
+def test_functions_without_a_value_are_refused() -> None:
+    for name, x in (("sqrt", -1), ("log", 0), ("acos", 1.5), ("exp", 1e6)):
+        with pytest.raises(ModelError, match=f"{name}.* is not a finite number"):
+            of_numbers(name, x)
 
 
 def test_fractions_stay_exact() -> None:
