@@ -2,7 +2,7 @@
 
 Velocities are checked by the complex step: with q moved by i h q', h = 1e-30, the imaginary part of the
 rotation and displacement over h is their derivative, exact to rounding. A joint that is added to
-`linegraph.joints.JOINTS` is tested here without another line.
+`linegraph.joints.JOINTS` is tested here without another line, unless it needs options.
 """
 
 from __future__ import annotations
@@ -32,7 +32,26 @@ Array = NDArray[np.complex128]
 
 STEP = 1e-30
 EXACT = 1e-14  # measured 3.3e-15
-KINDS = pytest.mark.parametrize("kind", JOINTS)
+NEEDED: dict[str, dict[str, Any]] = {
+    "helical": {"lead": 0.7},
+    "compound": {"parts": (("revolute", (0, 1, 0)), ("helical", (0.6, 0, 0.8), {"lead": -0.4}))},
+}
+"""Options without which a type cannot be."""
+
+VARIANTS: dict[str, tuple[str, dict[str, Any]]] = {
+    **{kind: (kind, NEEDED.get(kind, {})) for kind in JOINTS},
+    "spherical by angles": ("spherical", {"angles": "zxz"}),
+    "free by angles": ("free", {"angles": "xyz"}),
+    "oblique universal": ("universal", {"axes": ((1, 2, -1), (0.5, 0, 1))}),
+    "compound of many": (
+        "compound",
+        {"parts": (("prismatic", (1, 2, 3)), ("planar", (0, -1, 0)), ("revolute", (1, 0, 1)))},
+    ),
+}
+"""Every registered type, some with further options."""
+
+UNALIGNED = ("fixed", "free", "spherical")
+KINDS = pytest.mark.parametrize("kind", VARIANTS)
 SEEDS = pytest.mark.parametrize("seed", range(10))
 WAYS = pytest.mark.parametrize("forward", [True, False], ids=["forward", "reversed"])
 
@@ -59,7 +78,11 @@ def unit_axis(rng: np.random.Generator) -> tuple[float, float, float]:
 
 def made(kind: str, axis: Sequence[float] = (0, 0, 1)) -> Joint:
     x, y, z = axis
-    return JOINTS[kind]("j", ("ground", "b"), axis=(x, y, z))
+    word, options = VARIANTS[kind]
+    return JOINTS[word]("j", ("ground", "b"), axis=(x, y, z), **options)
+
+
+FREEDOMS = {kind: made(kind).freedoms for kind in VARIANTS}
 
 
 def state(joint: Joint, rng: np.random.Generator) -> tuple[NDArray[Any], NDArray[Any]]:
@@ -119,7 +142,7 @@ def test_the_register_is_keyed_by_kind_and_the_builder_has_its_words() -> None:
         assert joint_type.kind == kind
         model = Model("m")
         body = model.body("b")
-        joint = getattr(model, kind)("j", between=("ground", body))
+        joint = getattr(model, kind)("j", between=("ground", body), **NEEDED.get(kind, {}))
         assert type(joint) is joint_type
         assert model.joints == (joint,)
         assert getattr(model, kind).__doc__
@@ -148,7 +171,9 @@ def test_lengths_names_and_units(kind: str) -> None:
 def test_at_rest_head_and_tail_coincide(kind: str) -> None:
     joint = made(kind)
     motion = joint.motion(Floats(), joint.rest(), (0.0,) * joint.freedoms)
-    np.testing.assert_array_equal(np.array(motion.rotation.matrix(), dtype=float), np.eye(3))
+    # oblique axes leave the rounding of constant rotations
+    tolerance = 1e-15 if kind in ("oblique universal", "compound of many") else 0.0
+    near(np.array(motion.rotation.matrix(), dtype=float), np.eye(3), tolerance)
     np.testing.assert_array_equal(np.array(motion.displacement, dtype=float), np.zeros(3))
 
 
@@ -220,10 +245,22 @@ def test_the_axis_is_the_z_of_the_aligned_frame(kind: str, seed: int) -> None:
     joint = made(kind, axis)
     alignment = np.array(joint.alignment(), dtype=float)
     near(alignment @ alignment.T, np.eye(3))
-    if kind in ("fixed", "free"):
+    if joint.kind in UNALIGNED:
         np.testing.assert_array_equal(alignment, np.eye(3))
-    else:
+    elif joint.kind not in ("universal", "compound"):
         near(alignment[:, 2], np.array(axis))
+
+
+def test_the_last_axis_of_rotation_is_the_z_of_several() -> None:
+    """Universal and compound joints have axes of their own; coordinate axes are left as they are."""
+    np.testing.assert_array_equal(np.array(made("universal").alignment()), np.eye(3))
+    for kind, last in (
+        ("oblique universal", (0.5, 0, 1)),
+        ("compound", (0.6, 0, 0.8)),
+        ("compound of many", (1, 0, 1)),
+    ):
+        expected = np.array(last) / np.linalg.norm(last)
+        near(np.array(made(kind).alignment(), dtype=float)[:, 2], expected)
 
 
 @pytest.mark.parametrize("axis", [(1, 0, 0), (0, 1, 0), (0, 0, -1), (0, -1, 0)])
@@ -306,7 +343,8 @@ def pair(kind: str, forward: bool, rng: np.random.Generator) -> Model:
     ]
     tail, head = ends if forward else ends[::-1]
     model.free("base", between=("ground", handles[0]))
-    model.add_joint(JOINTS[kind]("j", (tail, head), axis=unit_axis(rng)))
+    word, options = VARIANTS[kind]
+    model.add_joint(JOINTS[word]("j", (tail, head), axis=unit_axis(rng), **options))
     return model
 
 
@@ -359,24 +397,29 @@ def test_effort_inputs_act_along_the_velocities(kind: str) -> None:
     rng = np.random.default_rng(1)
     model = pair(kind, True, rng)
     tree = derive(model).tree(Floats(), {})
-    freedoms = JOINTS[kind].freedoms
-    expected = range(6, 6 + freedoms) if kind not in ("fixed", "free") else ()
-    assert tree.inputs == tuple(expected)
     joint = made(kind)
-    assert joint.effort == (kind != "free")
+    assert joint.effort == (joint.kind != "free")
+    acting = joint.velocities() if joint.effort else ()
+    assert [quantity.name for quantity in tree.inputs] == [quantity.name for quantity in acting]
+    assert tree.layout.efforts == [(6 + k, k) for k in range(len(acting))]
+    for quantity, velocity in zip(tree.inputs, acting, strict=True):
+        assert quantity.unit == {"rad/s": "N*m", "m/s": "N"}[velocity.unit]
 
 
-@pytest.mark.parametrize("kind", [kind for kind in JOINTS if JOINTS[kind].freedoms])
+@pytest.mark.parametrize("kind", [kind for kind, count in FREEDOMS.items() if count])
 def test_effort_can_be_given_and_taken(kind: str) -> None:
+    word, options = VARIANTS[kind]
     for effort in (True, False):
         model = Model("m")
         body = model.body("b", mass=1, inertia=(1, 2, 3))
-        joint = getattr(model, kind)("j", between=("ground", body), effort=effort)
+        joint = getattr(model, word)("j", between=("ground", body), effort=effort, **options)
         tree = derive(model).tree(Floats(), {})
-        assert tree.inputs == (tuple(range(joint.freedoms)) if effort else ())
+        count = joint.freedoms if effort else 0
+        assert len(tree.inputs) == count
+        assert tree.layout.efforts == [(k, k) for k in range(count)]
 
 
-@pytest.mark.parametrize("kind", [kind for kind in JOINTS if JOINTS[kind].freedoms == 1])
+@pytest.mark.parametrize("kind", [kind for kind, count in FREEDOMS.items() if count == 1])
 @SEEDS
 def test_a_locked_joint_is_the_joint_at_that_value(kind: str, seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -391,9 +434,10 @@ def test_a_locked_joint_is_the_joint_at_that_value(kind: str, seed: int) -> None
     near(np.array(locked.bias(q[:7], v[:6])), np.array(moving.bias(q, [*v[:6], 0.0]))[:6])
 
 
-@pytest.mark.parametrize("kind", [kind for kind in JOINTS if JOINTS[kind].freedoms != 1])
+@pytest.mark.parametrize("kind", [kind for kind, count in FREEDOMS.items() if count != 1])
 def test_only_joints_of_one_freedom_can_be_locked(kind: str) -> None:
     model = Model("m")
-    getattr(model, kind)("j", between=("ground", model.body("b")))
-    with pytest.raises(ModelError, match=f'joint "j": is {kind}; only joints of one freedom can'):
+    word, options = VARIANTS[kind]
+    getattr(model, word)("j", between=("ground", model.body("b")), **options)
+    with pytest.raises(ModelError, match=f'joint "j": is {word}; only joints of one freedom can'):
         model.lock("j")

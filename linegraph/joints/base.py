@@ -4,20 +4,27 @@ A joint is an oriented edge from a *tail* frame to a *head* frame, in translatio
 across variables are the motion of the head relative to the tail; its coordinates q and velocities v are
 what it leaves free of it. All types answer the same questions in the same order:
 
-    positions   velocities   rest   alignment   motion   rates   regroup
+    positions   velocities   rest   resolved   alignment   motion   rates   regroup
 """
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from linegraph.rotation import IDENTITY_MATRIX, Inertia, Rotation
 from linegraph.vector import ZERO, Matrix, Scalar, Vector
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from linegraph.algebra import Algebra
     from linegraph.program import Quantity
+
+
+BY_INPUT = "input"
+"""What a joint's drive says to take its motion from inputs."""
 
 
 class Motion(NamedTuple):
@@ -59,15 +66,27 @@ class Joint:
         between: the terminals (tail, head) as ``body`` or ``body.frame``.
         axis: the direction it is about, along or normal to; unit length, in the joint's frames.
         effort: whether a force or torque along each velocity coordinate is an input.
+        drive: the prescribed motion, a function of t for each coordinate, or "input" for values with
+            their first two derivatives; None where the joint moves freely.
     """
 
     name: str
     between: tuple[str, str]
     axis: Vector = (0, 0, 1)
     effort: bool = True
+    drive: Any = None
 
     kind: ClassVar[str]
-    freedoms: ClassVar[int]
+
+    @property
+    def freedoms(self) -> int:
+        """The number of velocities; most types know it without being asked."""
+        return len(self.velocities())
+
+    @property
+    def singular(self) -> bool:
+        """Whether its velocities become dependent at some q, so that even a solid body leaves M singular."""
+        return False
 
     def positions(self) -> tuple[Quantity, ...]:
         """The coordinates q: names, units, meaning."""
@@ -80,6 +99,10 @@ class Joint:
     def rest(self) -> tuple[float, ...]:
         """The q at which head and tail frames coincide."""
         return (0.0,) * len(self.positions())
+
+    def resolved(self, resolve: Callable[[Any], Scalar]) -> Self:
+        """The same joint with the model values `motion` reads as scalars of an algebra."""
+        return self
 
     def alignment(self) -> Matrix:
         """Rotation from joint axes, in which `motion` is written with the axis as z, to frame axes."""
@@ -98,3 +121,23 @@ class Joint:
     def regroup(self, head: Moments) -> tuple[Moments, Moments]:
         """Split the head body's moments into (kept, handed to the tail body) with the same M and h."""
         return head, Moments(0, ZERO, (0, 0, 0, 0, 0, 0))
+
+    def _with(self, **values: Any) -> Self:
+        """A copy with other values of some fields, which are not checked again."""
+        twin = copy(self)
+        for name, value in values.items():
+            object.__setattr__(twin, name, value)
+        return twin
+
+
+def point_apart(head: Moments) -> tuple[Moments, Moments]:
+    """The mass as a point at the origin, handed over: for joints whose frames have their origin in common."""
+    kept = Moments(0, head.first, head.inertia)
+    return kept, Moments(head.mass, ZERO, (0, 0, 0, 0, 0, 0))
+
+
+def round_apart(head: Moments) -> tuple[Moments, Moments]:
+    """The inertia diag(yy, yy, 0), handed over: for joints whose frames have the direction of z in common."""
+    xx, xy, xz, yy, yz, zz = head.inertia
+    kept = Moments(head.mass, head.first, (xx - yy, xy, xz, 0, yz, zz))
+    return kept, Moments(0, ZERO, (yy, 0, 0, yy, 0, 0))

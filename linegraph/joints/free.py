@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from linegraph.joints.base import Joint, Motion
+from linegraph.joints.composition import compose
+from linegraph.joints.spherical import Spherical
 from linegraph.program import Quantity
-from linegraph.rotation import IDENTITY_MATRIX, Full, Rotation, from_quaternion
+from linegraph.rotation import IDENTITY_MATRIX, Rotation
 from linegraph.vector import ZERO, Scalar
 
 if TYPE_CHECKING:
@@ -19,63 +21,73 @@ class Free(Joint):
     """Six freedoms between tail and head: a floating base.
 
     q = (position in the tail frame (m), unit quaternion x, y, z, w); v = (velocity of the head's origin
-    (m/s), angular velocity (rad/s)), both in head axes. It carries no effort.
+    (m/s), angular velocity (rad/s)), both in head axes. Or, with `angles`, q = (position, three angles) and
+    v = q̇, with singular orientations as `Spherical` tells. It carries no effort.
+
+    Attributes:
+        angles: the sequence of axes of the turns, e.g. "zyx"; None for the quaternion.
 
     Example:
         >>> Free("root", ("ground", "trunk")).rest()
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+        >>> [c.name for c in Free("root", ("ground", "trunk"), angles="zyx").velocities()][2:4]
+        ['root_z', 'root_angle1']
     """
 
     effort: bool = False
+    angles: str | None = None
     kind = "free"
     freedoms = 6
 
+    def __post_init__(self) -> None:
+        """Raises `ModelError` where the sequence of axes is unknown."""
+        _ = self._ball
+
+    @property
+    def _ball(self) -> Spherical:
+        """Its rotation alone."""
+        return Spherical(self.name, self.between, angles=self.angles)
+
+    @property
+    def singular(self) -> bool:
+        """With angles, where the first and the third axis are in line."""
+        return self.angles is not None
+
     def positions(self) -> tuple[Quantity, ...]:
-        """Position and quaternion."""
-        place = [
+        """Position, and quaternion or angles."""
+        place = (
             Quantity(f"{self.name}_{c}", "m", f"position {c} of {self.name}, in the tail frame")
             for c in "xyz"
-        ]
-        turn = [
-            Quantity(f"{self.name}_q{c}", "1", f"quaternion {c} of {self.name}") for c in "xyzw"
-        ]
-        return tuple(place + turn)
+        )
+        return (*place, *self._ball.positions())
 
     def velocities(self) -> tuple[Quantity, ...]:
-        """Velocity and angular velocity in head axes."""
-        linear = [
-            Quantity(f"{self.name}_v{c}", "m/s", f"velocity {c} of {self.name}, in head axes")
+        """Velocity and angular velocity in head axes, or the rates of position and angles."""
+        stem, frame = ("v", "head axes") if self.angles is None else ("", "tail axes")
+        linear = (
+            Quantity(f"{self.name}_{stem}{c}", "m/s", f"velocity {c} of {self.name}, in {frame}")
             for c in "xyz"
-        ]
-        angular = [
-            Quantity(
-                f"{self.name}_w{c}", "rad/s", f"angular velocity {c} of {self.name}, in head axes"
-            )
-            for c in "xyz"
-        ]
-        return tuple(linear + angular)
+        )
+        return (*linear, *self._ball.velocities())
 
     def rest(self) -> tuple[float, ...]:
-        """Origin and identity quaternion."""
-        return (0.0,) * 6 + (1.0,)
+        """Origin, and identity quaternion or no angles."""
+        return (0.0, 0.0, 0.0, *self._ball.rest())
 
     def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
-        """Shift and turn by the quaternion; the velocities are the components themselves."""
-        rotation = Rotation((Full(from_quaternion(q[3], q[4], q[5], q[6])),))
-        none = (ZERO, ZERO, ZERO)
-        return Motion(rotation, (q[0], q[1], q[2]), none + IDENTITY_MATRIX, IDENTITY_MATRIX + none)
+        """Shift and turn; with a quaternion the velocities are the components in head axes themselves."""
+        at, none = (q[0], q[1], q[2]), (ZERO, ZERO, ZERO)
+        turn = self._ball.motion(algebra, q[3:], v[3:])
+        if self.angles is None:
+            return Motion(turn.rotation, at, none + IDENTITY_MATRIX, IDENTITY_MATRIX + none)
+        return compose(Motion(Rotation(), at, none, IDENTITY_MATRIX), turn, v[:3], v[3:])
 
     def rates(
         self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]
     ) -> tuple[Scalar, ...]:
-        """Position rate R v; quaternion rate ``q̇ = 1/2 q (ω, 0)``."""
-        linear = Full(from_quaternion(q[3], q[4], q[5], q[6])).out((v[0], v[1], v[2]))
-        x, y, z, w = q[3:]
-        a, b, c = (rate / 2 for rate in v[3:])
-        return (
-            *linear,
-            w * a + y * c - z * b,
-            w * b + z * a - x * c,
-            w * c + x * b - y * a,
-            -(x * a + y * b + z * c),
-        )
+        """Position rate R v and quaternion rate; v itself with angles."""
+        if self.angles is not None:
+            return v
+        turn = self._ball.motion(algebra, q[3:], v[3:])
+        linear = turn.rotation.out((v[0], v[1], v[2]))
+        return (*linear, *self._ball.rates(algebra, q[3:], v[3:]))

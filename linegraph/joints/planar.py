@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linegraph.joints.base import Joint, Moments, Motion
+from linegraph.joints.base import Joint, Moments, Motion, round_apart
 from linegraph.program import Quantity
 from linegraph.rotation import Rotation, Turn, z_onto
 from linegraph.vector import ZERO, Matrix, Scalar
@@ -67,6 +67,4 @@ class Planar(Joint):
 
     def regroup(self, head: Moments) -> tuple[Moments, Moments]:
         """Hand over the part of the inertia that looks the same at every angle about the normal."""
-        xx, xy, xz, yy, yz, zz = head.inertia
-        kept = Moments(head.mass, head.first, (xx - yy, xy, xz, 0, yz, zz))
-        return kept, Moments(0, ZERO, (yy, 0, 0, yy, 0, 0))
+        return round_apart(head)

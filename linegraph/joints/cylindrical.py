@@ -1,0 +1,62 @@
+"""The cylindrical joint: rotation about an axis and translation along it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from linegraph.joints.base import Joint, Moments, Motion, round_apart
+from linegraph.program import Quantity
+from linegraph.rotation import Rotation, Turn, z_onto
+from linegraph.vector import ZERO, Matrix, Scalar
+
+if TYPE_CHECKING:
+    from linegraph.algebra import Algebra
+
+
+@dataclass(frozen=True)
+class Cylindrical(Joint):
+    """A shaft in a sleeve: the head turns about `axis` and slides along it, independently.
+
+    q = (angle (rad), displacement (m)), v their rates (rad/s, m/s).
+
+    Example:
+        >>> [c.unit for c in Cylindrical("sleeve", ("housing", "shaft")).velocities()]
+        ['rad/s', 'm/s']
+    """
+
+    kind = "cylindrical"
+    freedoms = 2
+
+    def positions(self) -> tuple[Quantity, ...]:
+        """The angle and the displacement."""
+        what = f"of cylindrical joint {self.name}"
+        return (
+            Quantity(f"{self.name}_angle", "rad", f"angle {what}"),
+            Quantity(f"{self.name}_displacement", "m", f"displacement {what}"),
+        )
+
+    def velocities(self) -> tuple[Quantity, ...]:
+        """Their rates."""
+        what = f"of cylindrical joint {self.name}"
+        return (
+            Quantity(f"{self.name}_angle", "rad/s", f"angular rate {what}"),
+            Quantity(f"{self.name}_displacement", "m/s", f"sliding rate {what}"),
+        )
+
+    def alignment(self) -> Matrix:
+        """Z onto the axis."""
+        return z_onto(self.axis)
+
+    def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
+        """A turn about z and a shift along it."""
+        turn = Turn(2, algebra.cos(q[0]), algebra.sin(q[0]))
+        z = (0, 0, 1)
+        return Motion(Rotation((turn,)), (0, 0, q[1]), (z, ZERO), (ZERO, z))
+
+    def regroup(self, head: Moments) -> tuple[Moments, Moments]:
+        """Hand over the part of the inertia that looks the same at every angle about the axis.
+
+        Mass and first moment stay: their places in the tail body change with the displacement.
+        """
+        return round_apart(head)
