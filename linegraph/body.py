@@ -122,6 +122,8 @@ def unit(axis: Sequence[Any], who: str) -> Vector:
         ModelError: three zeros.
     """
     x, y, z = axis
+    if any(isinstance(c, str) for c in axis):
+        raise ModelError(who, "an axis takes numbers, parameters or sympy expressions, not text")
     length: Any = math.hypot(x, y, z) if all(map(is_number, axis)) else _length(axis)
     if length == 0:
         raise ModelError(who, "the axis has length zero; give a direction such as (0, 0, 1)")

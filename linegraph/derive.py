@@ -9,15 +9,18 @@ Each arrow is one pure function.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from linegraph import orthogonality
 from linegraph.algebra import Algebra, Floats
 from linegraph.errors import ModelError, SourceError
+from linegraph.expression import Dag
 from linegraph.kinematics import KinematicTree, kinematic_tree, mechanical_topology
+from linegraph.loads import Applied, applied
 from linegraph.mass_matrix import mass_matrix
+from linegraph.parameters import Parameter, valued
 from linegraph.regularity import require_regular
 
 if TYPE_CHECKING:
@@ -47,17 +50,35 @@ class Derivation:
         """The links over an algebra, parameters as given."""
         return kinematic_tree(self.model, self.topology, algebra, parameters)
 
-    def numeric(self, parameters: Mapping[str, float] | None = None) -> Numeric:
-        """The numeric reference: the same derivation over floats.
+    @cached_property
+    def structure(self) -> KinematicTree:
+        """The links with every parameter and input a symbol: for counting and naming."""
+        dag = Dag()
+        parameters = self.model.parameters.values()
+        return self.tree(dag, valued(parameters, dag, lambda p: dag.symbol("p", p.name)))
+
+    def numeric(
+        self,
+        parameters: Mapping[str, float] | None = None,
+        t: float = 0.0,
+        u: Sequence[float] = (),
+    ) -> Numeric:
+        """The numeric reference: the same derivation over floats, at a time and for inputs.
 
         Raises:
             ModelError: a parameter has no value.
         """
-        values = {**default_values(self.model), **(parameters or {})}
-        for name in self.model.parameters:
-            if name not in values:
-                raise ModelError(f'parameter "{name}"', "has no value")
-        return Numeric(self.tree(Floats(), values))
+        chosen = parameters or {}
+
+        def given(parameter: Parameter) -> float:
+            value = chosen.get(parameter.name, parameter.value)
+            if value is None:
+                raise ModelError(f'parameter "{parameter.name}"', "has no value")
+            return float(value)
+
+        algebra = Floats(t=t, u=u)
+        values = valued(self.model.parameters.values(), algebra, given)
+        return Numeric(self.tree(algebra, values), self.model, algebra, values)
 
     @cached_property
     def symbolic(self) -> Any:
@@ -69,14 +90,25 @@ class Derivation:
 
 @dataclass(frozen=True)
 class Numeric:
-    """The derivation run over floats: one state at a time, slow, exact to rounding."""
+    """The derivation run over floats: one state at a time, slow, exact to rounding.
+
+    Attributes:
+        tree: the links, in numbers.
+        model: what elements act; None to leave them out.
+        algebra: the time and the inputs.
+        parameters: their values.
+    """
 
     tree: KinematicTree
+    model: Model | None = None
+    algebra: Floats = field(default_factory=Floats)
+    parameters: Mapping[str, Scalar] = field(default_factory=dict)
 
     def mass_matrix(self, q: Sequence[float]) -> list[list[float]]:
         """M(q)."""
-        crossed = orthogonality.arms(self.tree, Floats(), q, [0.0] * len(self.tree.velocities))
-        return mass_matrix(self.tree, Floats(), crossed)
+        return mass_matrix(
+            self.tree, self.algebra, self._arms(q, [0.0] * len(self.tree.velocities))
+        )
 
     def bias(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
         """h(q, v)."""
@@ -86,13 +118,28 @@ class Numeric:
         self, q: Sequence[float], v: Sequence[float], a: Sequence[float] | None
     ) -> list[float]:
         """M a + h."""
-        crossed = orthogonality.arms(self.tree, Floats(), q, v)
-        return orthogonality.inverse_dynamics(self.tree, Floats(), crossed, a)
+        crossed = self._arms(q, v)
+        acting = self.applied(q, v, driven=False)
+        return orthogonality.inverse_dynamics(self.tree, self.algebra, crossed, a, acting)
 
     def energy(self, q: Sequence[float], v: Sequence[float]) -> tuple[float, float]:
-        """Kinetic and potential energy."""
-        crossed = orthogonality.arms(self.tree, Floats(), q, v)
-        return orthogonality.energy(self.tree, Floats(), crossed)
+        """Kinetic and potential energy, that of springs included."""
+        kinetic, potential = orthogonality.energy(self.tree, self.algebra, self._arms(q, v))
+        acting = self.applied(q, v, driven=False)
+        return kinetic, potential + (acting.potential if acting else 0)
+
+    def applied(self, q: Sequence[float], v: Sequence[float], *, driven: bool) -> Applied | None:
+        """What elements and loads do that depend on inputs (`driven`), or those that do not."""
+        if self.model is None:
+            return None
+        state = (tuple(q), tuple(v))
+        crossed = self._arms(q, v)
+        return applied(
+            self.model, self.tree, self.algebra, self.parameters, crossed, *state, driven=driven
+        )
+
+    def _arms(self, q: Sequence[float], v: Sequence[float]) -> list[orthogonality.Arm]:
+        return orthogonality.arms(self.tree, self.algebra, q, v)
 
 
 def derive(model: Model) -> Derivation:
@@ -123,8 +170,3 @@ def _placed(error: ModelError, model: Model) -> ModelError:
     if model.source is None:
         return error
     return SourceError(model.source, model.places.get(error.thing), error.thing, error.problem)
-
-
-def default_values(model: Model) -> dict[str, float]:
-    """Every parameter's value; one without stays out."""
-    return {p.name: p.value for p in model.parameters.values() if p.value is not None}

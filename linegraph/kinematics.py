@@ -7,6 +7,7 @@ rotated and shifted mass distributions.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -17,6 +18,7 @@ from linegraph.body import GROUND, Body, Placement
 from linegraph.domains import TRANSLATION
 from linegraph.errors import ModelError
 from linegraph.joints import Joint, Moments
+from linegraph.layout import Freedom, Layout, Place, layout_of
 from linegraph.parameters import resolver
 from linegraph.rotation import IDENTITY_MATRIX, Rotation, product, rotation_of, snapped
 from linegraph.topology import Step, Topology, choose_forest
@@ -32,15 +34,6 @@ _NO_MOMENTS = Moments(0, ZERO, (0, 0, 0, 0, 0, 0))
 
 
 @dataclass(frozen=True)
-class Freedom:
-    """Where a joint's coordinate comes from: ``q_joint = ratio * (entry of the state) + offset``."""
-
-    index: int
-    ratio: Scalar = 1
-    offset: Scalar = 0
-
-
-@dataclass(frozen=True)
 class Link:
     """A rigid body of the reduced tree.
 
@@ -50,7 +43,7 @@ class Link:
         joint: what connects it to its parent.
         forward: whether the joint's edge points away from ground.
         rotation, at: the joint's near frame in the parent's working frame; constant.
-        positions, velocities: where the joint's q and v stand in the state.
+        place: where the joint's q and v come from.
         moments: mass distribution about the working origin, in working axes.
     """
 
@@ -60,9 +53,13 @@ class Link:
     forward: bool
     rotation: Rotation
     at: Vector
-    positions: tuple[Freedom, ...]
-    velocities: tuple[Freedom, ...]
+    place: Place
     moments: Moments
+
+    @property
+    def velocities(self) -> tuple[Freedom, ...]:
+        """Where the joint's velocities stand in the state; none where its motion is prescribed."""
+        return self.place.velocities
 
     @property
     def numeric(self) -> bool:
@@ -73,13 +70,32 @@ class Link:
 
 @dataclass(frozen=True)
 class KinematicTree:
-    """All links, every parent before its children, and what the state consists of."""
+    """All links, every parent before its children, and what state and inputs consist of.
+
+    Attributes:
+        layout: coordinates and inputs, and which joint reads which.
+        bodies: where each body's frame is: its link, -1 for ground, and its placement there.
+    """
 
     links: tuple[Link, ...]
     gravity: Vector
-    positions: tuple[Quantity, ...]
-    velocities: tuple[Quantity, ...]
-    inputs: tuple[int, ...]
+    layout: Layout
+    bodies: Mapping[str, tuple[int, Placement]]
+
+    @property
+    def positions(self) -> tuple[Quantity, ...]:
+        """The coordinates q."""
+        return tuple(self.layout.positions)
+
+    @property
+    def velocities(self) -> tuple[Quantity, ...]:
+        """The velocities v."""
+        return tuple(self.layout.velocities)
+
+    @property
+    def inputs(self) -> tuple[Quantity, ...]:
+        """The inputs u."""
+        return tuple(self.layout.inputs)
 
     @property
     def coupled(self) -> bool:
@@ -94,6 +110,15 @@ class KinematicTree:
         for link in self.links:
             order.update((freedom.index, None) for freedom in link.velocities)
         return list(order)
+
+    def normalise(self, q: list[float]) -> None:
+        """Give the quaternions among the coordinates length 1, in place."""
+        for link in self.links:
+            places = [freedom.index for freedom in link.place.positions]
+            if len(places) > len(link.velocities):
+                length = math.hypot(*(q[i] for i in places[-4:]))
+                for i in places[-4:]:
+                    q[i] /= length
 
     def regrouped(self) -> KinematicTree:
         """The same M and h from fewer parameters: what a parent can carry is handed to it, leaf to root.
@@ -190,6 +215,7 @@ def mechanical_topology(model: Model, graph: SystemGraph) -> Topology:
         raise ModelError(f'model "{model.name}"', "has no bodies: there is nothing to derive")
     weights = {joint.name: float(joint.freedoms) for joint in model.joints}
     weights |= {f"{name}/inertia": 7.0 for name in model.bodies}
+    weights |= {element.name: math.inf for element in model.elements}
     projection = graph[TRANSLATION.name]
     topology = choose_forest(projection, weights, roots=(GROUND,))
     joints = {joint.name for joint in model.joints}
@@ -211,86 +237,16 @@ def kinematic_tree(
     Raises:
         ModelError: a coupling is impossible.
     """
-    resolve = resolver(algebra, parameters)
-    state = _State(model, resolve)
-    _require_unique(state.positions)
-    _require_unique(state.velocities)
-    return _Walk(model, state, resolve).along(topology.walk)
-
-
-def _require_unique(quantities: list[Quantity]) -> None:
-    """Refuse two coordinates of one name: readers and inputs could not tell them apart."""
-    seen: set[str] = set()
-    for quantity in quantities:
-        if quantity.name in seen:
-            problem = "two coordinates have this name; rename a joint"
-            raise ModelError(f'coordinate "{quantity.name}"', problem)
-        seen.add(quantity.name)
-
-
-class _State:
-    """The layout of q and v: which entries each joint reads, couplings included."""
-
-    def __init__(self, model: Model, resolve: Resolve) -> None:
-        self._model = model
-        self._resolve = resolve
-        self.positions: list[Quantity] = []
-        self.velocities: list[Quantity] = []
-        self.inputs: list[int] = []
-        self._places: dict[str, tuple[tuple[Freedom, ...], tuple[Freedom, ...]]] = {}
-        followers = {coupling.joint: coupling for coupling in model.couplings}
-        for joint in model.joints:
-            if joint.name not in followers:
-                self._add(joint)
-        for coupling in model.couplings:
-            self._couple(coupling.joint, followers)
-
-    def places(self, joint: Joint) -> tuple[tuple[Freedom, ...], tuple[Freedom, ...]]:
-        """Where the joint's q and v come from."""
-        return self._places[joint.name]
-
-    def _add(self, joint: Joint) -> None:
-        q, v = joint.positions(), joint.velocities()
-        first, start = len(self.positions), len(self.velocities)
-        self._places[joint.name] = (
-            tuple(Freedom(first + k) for k in range(len(q))),
-            tuple(Freedom(start + k) for k in range(len(v))),
-        )
-        self.positions += q
-        self.velocities += v
-        if joint.effort:
-            self.inputs += range(start, start + len(v))
-
-    def _couple(self, name: str, followers: Mapping[str, Any]) -> None:
-        """Follow the chain of masters to an independent joint and compose the ratios."""
-        who = f'joint "{name}"'
-        joints = {joint.name: joint for joint in self._model.joints}
-        ratio: Scalar = 1
-        offset: Scalar = 0
-        seen = {name}
-        follower = name
-        while follower in followers:
-            coupling = followers[follower]
-            for part in (follower, coupling.master):
-                if part not in joints or joints[part].freedoms != 1:
-                    raise ModelError(who, f'cannot follow: "{part}" is not a joint of one freedom')
-            # offset first: it is seen through the ratios gathered so far
-            offset = offset + ratio * self._resolve(coupling.offset)
-            ratio = ratio * self._resolve(coupling.ratio)
-            follower = coupling.master
-            if follower in seen:
-                raise ModelError(who, "follows itself through a circle of couplings")
-            seen.add(follower)
-        (q,), (v,) = self._places[follower]
-        self._places[name] = ((Freedom(q.index, ratio, offset),), (Freedom(v.index, ratio),))
+    layout = layout_of(model, algebra, parameters)
+    return _Walk(model, layout, resolver(algebra, parameters)).along(topology.walk)
 
 
 class _Walk:
     """Collects links on a walk from ground outward."""
 
-    def __init__(self, model: Model, state: _State, resolve: Resolve) -> None:
+    def __init__(self, model: Model, layout: Layout, resolve: Resolve) -> None:
         self._model = model
-        self._state = state
+        self._layout = layout
         self._resolve = resolve
         self._joints = {joint.name: joint for joint in model.joints}
         self._terminals = model.terminals()
@@ -303,16 +259,11 @@ class _Walk:
             joint = self._joints.get(step.edge.name)
             if joint is not None and step.edge.component == joint.name:
                 self._cross(joint, step)
-        state = self._state
-        return KinematicTree(
-            tuple(self._links),
-            _resolved(self._model.gravity, self._resolve),
-            tuple(state.positions),
-            tuple(state.velocities),
-            tuple(sorted(state.inputs)),
-        )
+        gravity = _resolved(self._model.gravity, self._resolve)
+        return KinematicTree(tuple(self._links), gravity, self._layout, self._where)
 
     def _cross(self, joint: Joint, step: Step) -> None:
+        joint = joint.resolved(self._resolve)
         body, placement = self._terminals[step.near]
         parent, pose = self._where[body]
         near = self._compose(pose, self._constant(placement))
@@ -323,11 +274,9 @@ class _Walk:
             return
         alignment = self._alignment(joint)
         near = self._compose(near, alignment)
-        positions, velocities = self._state.places(joint)
-        link = Link(
-            "", parent, joint, step.forward, rotation_of(near.rotation), near.at,
-            positions, velocities, _NO_MOMENTS,
-        )  # fmt: skip
+        place = self._layout.places[joint.name]
+        rotation = rotation_of(near.rotation)
+        link = Link("", parent, joint, step.forward, rotation, near.at, place, _NO_MOMENTS)
         self._links.append(link)
         self._enter(body, len(self._links) - 1, inverse(self._compose(far, alignment)))
 

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from linegraph import vector
-from linegraph.kinematics import Freedom, KinematicTree, carried, joined
+from linegraph.kinematics import KinematicTree, carried, joined
+from linegraph.layout import Freedom
 from linegraph.orthogonality import Arm, applied_to, caption, gathered, projection, set_label
 from linegraph.rotation import IDENTITY_MATRIX, Full, Relabel, Turn
 from linegraph.vector import ZERO, Matrix, Scalar, Vector, add, cross, dot
@@ -79,8 +80,10 @@ def _inward_in_ground(
         places.append(at)
         turned = [vector.times(rows[-1], s) for s in arm.motion.angular]
         moved = [vector.times(rows[-1], u) for u in arm.motion.linear]
-        # a turn about an axis through `at` moves the body's point at the origin of ground
-        axes.append([(s, add(u, cross(at, s))) for s, u in zip(turned, moved, strict=True)])
+        # a turn about an axis through `at` moves the body's point at the origin of ground; a prescribed
+        # joint has no freedom to project on
+        pairs = zip(turned, moved, strict=True) if link.velocities else ()
+        axes.append([(s, add(u, cross(at, s))) for s, u in pairs])
 
     def column(i: int, force: Vector, torque: Vector) -> Column:
         force, torque = vector.times(rows[i], force), vector.times(rows[i], torque)
@@ -96,7 +99,7 @@ def ground_is_cheaper(tree: KinematicTree, crossed: list[Arm]) -> bool:
     """Whether long chains make it worth carrying every column of M to ground.
 
     Estimated in operations: from frame to frame the turning of two vectors and a lever, at every step;
-    in ground 11 at every step and about 100 for each link to get there.
+    in ground 11 at every step, and about 60 for each link and 40 for each column to get there.
     """
     inward: list[int] = []
     depth: list[int] = []
@@ -104,10 +107,11 @@ def ground_is_cheaper(tree: KinematicTree, crossed: list[Arm]) -> bool:
     for link, arm in zip(tree.links, crossed, strict=True):
         step = sum(TURNING[type(factor)] for factor in arm.rotation.factors)
         step += 4 * sum(1 for x in arm.at if x != 0)
-        inward.append(step + (inward[link.parent] if link.parent >= 0 else 0))
-        depth.append(1 + (depth[link.parent] if link.parent >= 0 else 0))
+        # the root's own step is never crossed: its columns end at its joint
+        inward.append(step + inward[link.parent] if link.parent >= 0 else 0)
+        depth.append(1 + depth[link.parent] if link.parent >= 0 else 0)
         by_frames += len(link.velocities) * inward[-1]
-        in_ground += len(link.velocities) * 11 * depth[-1] + 100
+        in_ground += 60 + len(link.velocities) * (40 + 11 * depth[-1])
     return in_ground < by_frames
 
 

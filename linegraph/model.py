@@ -3,72 +3,43 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from linegraph.body import GROUND, MASS_CENTER, Body, Placement, inertia_of, orientation, unit
-from linegraph.checks import finite, nearest, plain, rotation_matrix, triple, vector
-from linegraph.domains import ROTATION, TRANSLATION
+from linegraph.assemblies import add_basement, add_rotor
+from linegraph.body import GROUND, MASS_CENTER, Body, Placement, inertia_of, unit
+from linegraph.checks import finite, nearest, plain, vector
+from linegraph.elements import Damper, Element, Friction, Law, Load, Spring, Stop
+from linegraph.elements.load import BODY, WORLD
 from linegraph.errors import ModelError
-from linegraph.graph import Edge, SystemGraph, unite
-from linegraph.joints import Fixed, Free, Joint, Planar, Prismatic, Revolute
-from linegraph.parameters import Parameter, is_number
-from linegraph.rotation import IDENTITY_MATRIX, snapped
+from linegraph.formula import Formula
+from linegraph.joints import (
+    Compound,
+    Cylindrical,
+    Fixed,
+    Free,
+    Helical,
+    Joint,
+    Planar,
+    Prismatic,
+    Revolute,
+    Spherical,
+    Universal,
+)
+from linegraph.joints.base import BY_INPUT
+from linegraph.parameters import Input, Parameter, is_number, names_in
+from linegraph.terminals import system_graph, terminals_of
 from linegraph.vector import ZERO, Vector
+from linegraph.words import BodyHandle, Kind, Terminal, adds, applies
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
+
+    from linegraph.graph import SystemGraph
 
 STANDARD_GRAVITY: Vector = (0, 0, -9.81)
 SNAP = 1e-11
 
-Ask = ParamSpec("Ask")
-Kind = TypeVar("Kind", bound=Joint)
-
-
-@dataclass(frozen=True)
-class BodyHandle:
-    """A body of a model under construction; stands for its own frame where a terminal is wanted."""
-
-    model: Model
-    name: str
-
-    def frame(
-        self,
-        name: str,
-        at: Sequence[Any] = ZERO,
-        rpy: Sequence[float] | None = None,
-        axis: Sequence[float] | None = None,
-        angle: float = 0.0,
-        rotation: Any = None,
-    ) -> str:
-        """Add a named frame and return its terminal.
-
-        Args:
-            name: unique on this body.
-            at: origin in the body's frame (m).
-            rpy: orientation by turns about the body's fixed x, y, z, in radians; or
-            axis: by one turn about this direction,
-            angle: by so many radians; or
-            rotation: by the matrix whose columns are the frame's axes in body axes.
-
-        Returns:
-            ``"body.frame"``, to be used in `between`.
-        """
-        who = f'frame "{self.name}.{name}"'
-        finite((angle,), who)
-        if rotation is None:
-            matrix = orientation(who, triple(rpy, who), triple(axis, who), angle)
-        else:
-            matrix = rotation_matrix(rotation, who)
-        placement = Placement(vector(at, who), snapped(matrix, self.model.snap))
-        return self.model.add_frame(self.name, name, placement)
-
-    def __str__(self) -> str:
-        """The body's own frame as a terminal."""
-        return self.name
-
-
-Terminal = str | BodyHandle
+Acting = TypeVar("Acting", Element, Load)
 
 
 @dataclass(frozen=True)
@@ -79,24 +50,6 @@ class Coupling:
     master: str
     ratio: Any = 1
     offset: Any = 0
-
-
-def _adds(kind: Callable[Concatenate[str, tuple[str, str], Ask], Kind]) -> Any:
-    """A builder method that adds a joint of one kind: the line in the register of words."""
-
-    def add(
-        self: Model,
-        name: str,
-        between: tuple[Terminal, Terminal],
-        *args: Ask.args,
-        **kw: Ask.kwargs,
-    ) -> Kind:
-        tail, head = between
-        return self.add_joint(kind(name, (str(tail), str(head)), *args, **kw))
-
-    add.__doc__ = kind.__doc__
-    add.__name__ = str(getattr(kind, "kind", add.__name__))
-    return add
 
 
 class Model:
@@ -133,6 +86,8 @@ class Model:
         self.ground = BodyHandle(self, GROUND)
         self.ground_frames: dict[str, Placement] = {}
         self.parameters: dict[str, Parameter] = {}
+        self._inputs: dict[str, Input] = {}
+        self._elements: dict[str, Element | Load] = {}
         self.warnings: list[str] = []
         # where a file said what, for errors found later: the file, and a line for each thing
         self.source: str | None = None
@@ -140,11 +95,22 @@ class Model:
         self._joints: dict[str, Joint] = {}
         self._couplings: dict[str, Coupling] = {}
 
-    revolute = _adds(Revolute)
-    prismatic = _adds(Prismatic)
-    planar = _adds(Planar)
-    free = _adds(Free)
-    fixed = _adds(Fixed)
+    spring = applies(Spring)
+    damper = applies(Damper)
+    friction = applies(Friction)
+    stop = applies(Stop)
+    law = applies(Law)
+
+    revolute = adds(Revolute)
+    prismatic = adds(Prismatic)
+    helical = adds(Helical)
+    cylindrical = adds(Cylindrical)
+    universal = adds(Universal)
+    planar = adds(Planar)
+    spherical = adds(Spherical)
+    free = adds(Free)
+    compound = adds(Compound)
+    fixed = adds(Fixed)
 
     @property
     def gravity(self) -> Vector:
@@ -165,19 +131,54 @@ class Model:
         """The coupled joints in declared order."""
         return tuple(self._couplings.values())
 
-    def parameter(
-        self, name: str, value: float | None = None, unit: str = "", about: str = ""
-    ) -> Parameter:
-        """Declare a number that stays a symbol.
+    def parameter(self, name: str, value: Any = None, unit: str = "", about: str = "") -> Parameter:
+        """Declare a number that stays a symbol, or one that follows from earlier ones.
+
+        Args:
+            name: unique among parameters.
+            value: the default; or an expression of earlier parameters, as text or sympy's, which is
+                computed wherever the name is used.
+            unit: its unit, for readers.
+            about: its meaning, for readers.
 
         Raises:
             ModelError: the name is taken.
         """
         if name in self.parameters:
             raise ModelError(f'parameter "{name}"', "is declared twice")
+        who = f'parameter "{name}"'
         if value is not None:
-            finite((value,), f'parameter "{name}"')
+            finite((value,), who)
+            for used in sorted(names_in(value) - self.parameters.keys()):
+                raise ModelError(who, f"depends on {used}, which is no earlier parameter")
         return self.parameters.setdefault(name, Parameter(name, value, unit, about))
+
+    def input(self, name: str, unit: str = "", about: str = "") -> Input:
+        """Declare an input u for use in laws of forces.
+
+        Raises:
+            ModelError: the name is taken.
+        """
+        if name in self._inputs:
+            raise ModelError(f'input "{name}"', "is declared twice")
+        return self._inputs.setdefault(name, Input(name, None, unit, about))
+
+    @property
+    def inputs(self) -> tuple[Input, ...]:
+        """The declared inputs."""
+        return tuple(self._inputs.values())
+
+    @property
+    def elements(self) -> tuple[Element | Load, ...]:
+        """The force elements and loads in declared order."""
+        return tuple(self._elements.values())
+
+    @property
+    def depends_on_time(self) -> bool:
+        """Whether a prescribed motion or a law names the time t."""
+        values = [value for joint in self.joints for value in _values(joint.drive)]
+        values += [value for element in self.elements for value in element.values()]
+        return any("t" in names_in(value) for value in values)
 
     def body(
         self,
@@ -242,6 +243,64 @@ class Model:
         self._joints[joint.name] = joint
         return joint
 
+    def load(
+        self,
+        name: str,
+        at: Terminal,
+        force: Sequence[Any] = ZERO,
+        torque: Sequence[Any] = ZERO,
+        axes: str = WORLD,
+    ) -> Load:
+        """Apply a force and a torque to a body; see `Load`."""
+        who = f'load "{name}"'
+        if axes not in (WORLD, BODY):
+            raise ModelError(who, f'axes are "{WORLD}" or "{BODY}", not "{axes}"')
+        load = Load(name, str(at), vector(force, who), vector(torque, who), axes)
+        return self.add_element(load)
+
+    def add_element(self, element: Acting) -> Acting:
+        """Add a force element made elsewhere; ``model.spring(...)`` and its siblings are friendlier.
+
+        Raises:
+            ModelError: the name is taken, or the element has no place or two.
+        """
+        who = f'{element.kind} "{element.name}"'
+        if element.name in self._elements or element.name in self._joints:
+            raise ModelError(who, "the name is taken; names of joints and elements are unique")
+        if isinstance(element, Element) and (element.between is None) == (element.joint is None):
+            raise ModelError(who, "give either between=(tail, head) or joint=...")
+        finite(element.values(), who)
+        self._elements[element.name] = element
+        return element
+
+    def rotor(self, name: str, joint: str | Joint, inertia: Any, ratio: Any = 1) -> BodyHandle:
+        """Add a motor's rotor behind a gear at a revolute joint: it turns `ratio` times as fast.
+
+        A body without mass, with `inertia` (kg m^2) about the joint's axis alone, sits in the joint's tail
+        and follows its coordinate. What that adds to M, and the gyroscopic torques of a rotor carried
+        about, follow like those of any body.
+
+        Raises:
+            ModelError: the joint is not a revolute joint of this model.
+        """
+        return add_rotor(
+            self, name, joint.name if isinstance(joint, Joint) else joint, inertia, ratio
+        )
+
+    def basement(self, position: Any = None, rotation: Any = None) -> BodyHandle:
+        """Add the basement: a massless body called "basement" in prescribed motion.
+
+        Args:
+            position: of its origin in ground axes (m): three expressions of t, each of which, or all at
+                once, may be "input" to come from inputs with its first two derivatives; default at rest.
+            rotation: ``{"axis": direction, "angle": expression}``, or ``{"rpy": three expressions}`` for
+                turns about ground's x, y, z in this order, or "input" for the latter; default none.
+
+        Raises:
+            ModelError: another form.
+        """
+        return add_basement(self, position, rotation)
+
     def couple(self, joint: str | Joint, to: str | Joint, ratio: Any = 1, offset: Any = 0) -> None:
         """Let one joint follow another: ``q_joint = ratio q_to + offset``.
 
@@ -276,6 +335,9 @@ class Model:
         self._weld(found, value)
         for coupling in list(self.couplings):
             if coupling.master == joint:
+                if any(isinstance(x, (str, Formula)) for x in (coupling.ratio, coupling.offset)):
+                    problem = f'follows "{joint}" by a text; lock it first, at a value'
+                    raise ModelError(f'joint "{coupling.joint}"', problem)
                 self.lock(coupling.joint, coupling.ratio * value + coupling.offset)
 
     def _weld(self, joint: Joint, value: float) -> None:
@@ -298,54 +360,19 @@ class Model:
         Raises:
             ModelError: two terminals have the same name.
         """
-        found = {GROUND: (GROUND, Placement(ZERO, IDENTITY_MATRIX))}
-
-        def add(terminal: str, body: str, placement: Placement) -> None:
-            if terminal in found:
-                raise ModelError(f'terminal "{terminal}"', "two frames have this name; rename one")
-            found[terminal] = (body, placement)
-
-        for name, placement in self.ground_frames.items():
-            add(f"{GROUND}.{name}", GROUND, placement)
-        for body in self.bodies.values():
-            add(body.name, body.name, Placement(ZERO, IDENTITY_MATRIX))
-            for name, placement in body.frames.items():
-                add(f"{body.name}.{name}", body.name, placement)
-        for name in self.bodies:
-            if f"{name}.{MASS_CENTER}" in found:
-                problem = f'is the name of the mass centre of "{name}"; rename a body or frame'
-                raise ModelError(f'terminal "{name}.{MASS_CENTER}"', problem)
-        return found
+        return terminals_of(self)
 
     def graph(self) -> SystemGraph:
         """The system graph: the union of all terminal graphs.
 
         Raises:
-            ModelError: a joint names a terminal that does not exist, or connects a body to itself.
+            ModelError: a component names a terminal that does not exist, or connects a body to itself.
         """
-        terminals = self.terminals()
-        for joint in self.joints:
-            who = f'joint "{joint.name}"'
-            for terminal in joint.between:
-                if terminal not in terminals:
-                    hint = nearest(terminal, terminals)
-                    raise ModelError(who, f'there is no body or frame "{terminal}"; {hint}')
-            if len({terminals[terminal][0] for terminal in joint.between}) == 1:
-                raise ModelError(who, f'connects body "{terminals[joint.between[0]][0]}" to itself')
-        return unite(
-            [self._ground_edges(), *(b.edges() for b in self.bodies.values()), self._joint_edges()]
-        )
+        return system_graph(self)
 
-    def _ground_edges(self) -> list[Edge]:
-        return [
-            Edge(f"{GROUND}/arm.{frame}", GROUND, domain, GROUND, f"{GROUND}.{frame}")
-            for domain in (TRANSLATION.name, ROTATION.name)
-            for frame in self.ground_frames
-        ]
 
-    def _joint_edges(self) -> list[Edge]:
-        return [
-            Edge(joint.name, joint.name, domain, *joint.between)
-            for domain in (TRANSLATION.name, ROTATION.name)
-            for joint in self.joints
-        ]
+def _values(drive: Any) -> tuple[Any, ...]:
+    """The values of a prescribed motion."""
+    if drive is None or drive == BY_INPUT:
+        return ()
+    return tuple(drive) if isinstance(drive, (tuple, list)) else (drive,)

@@ -21,13 +21,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph import vector
 from linegraph.joints import Moments, Motion
-from linegraph.vector import ZERO, Scalar, Vector, add, cross, dot
+from linegraph.layout import coordinates
+from linegraph.vector import ZERO, Scalar, Vector, add, cross, dot, subtract
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from linegraph.algebra import Algebra
-    from linegraph.kinematics import Freedom, KinematicTree, Link
+    from linegraph.kinematics import KinematicTree, Link
+    from linegraph.loads import Applied
     from linegraph.rotation import Inertia, Rotation
 
 
@@ -39,12 +41,14 @@ class Arm(NamedTuple):
         at: the link's origin in its parent's working frame.
         motion: the joint's motion, turned round where its edge points to ground.
         rates: the joint's velocity coordinates.
+        prescribed: their derivatives where the motion is prescribed; none where it is free.
     """
 
     rotation: Rotation
     at: Vector
     motion: Motion
     rates: tuple[Scalar, ...]
+    prescribed: tuple[Scalar, ...] = ()
 
 
 class Spin(NamedTuple):
@@ -63,14 +67,13 @@ def arms(
     found = []
     for link in tree.links:
         set_label(algebra, f"joint {link.joint.name}")
-        positions = tuple(_coordinate(f, q) for f in link.positions)
-        rates = tuple(f.ratio * v[f.index] for f in link.velocities)
+        positions, rates = coordinates(link.place, q, v)
         motion = link.joint.motion(algebra, positions, rates)
         if not link.forward:
             motion = reverse(motion)
         rotation = link.rotation @ motion.rotation
         at = add(link.at, link.rotation.out(motion.displacement))
-        found.append(Arm(rotation, at, motion, rates))
+        found.append(Arm(rotation, at, motion, rates, tuple(x.ddx for x in link.place.drive)))
     return found
 
 
@@ -97,10 +100,12 @@ def inverse_dynamics(
     algebra: Algebra,
     crossed: list[Arm],
     acceleration: Iterable[Scalar] | None = None,
+    applied: Applied | None = None,
 ) -> list[Scalar]:
     """``M v̇ + h`` for given v̇, without M; with no v̇ the bias h itself: (14) of the paper.
 
-    Motion runs from the root to the leaves (H^T), d'Alembert's forces and torques back (H).
+    Motion runs from the root to the leaves (H^T), d'Alembert's forces and torques, less those `applied`,
+    back (H).
     """
     spins = _spins(tree, algebra, crossed, acceleration)
     forces = [
@@ -108,6 +113,30 @@ def inverse_dynamics(
         for link, spin in zip(tree.links, spins, strict=True)
     ]
     total: list[Scalar] = [0] * len(tree.velocities)
+    if applied is not None:
+        forces = [
+            (subtract(f, g), subtract(n, m))
+            for (f, n), (g, m) in zip(forces, applied.wrenches, strict=True)
+        ]
+        total = [-effort for effort in applied.efforts]
+    return _inward(tree, algebra, crossed, forces, total)
+
+
+def generalised_forces(
+    tree: KinematicTree, algebra: Algebra, crossed: list[Arm], applied: Applied
+) -> list[Scalar]:
+    """What applied forces do along v: H, and the projection on every joint."""
+    return _inward(tree, algebra, crossed, list(applied.wrenches), list(applied.efforts))
+
+
+def _inward(
+    tree: KinematicTree,
+    algebra: Algebra,
+    crossed: list[Arm],
+    forces: list[tuple[Vector, Vector]],
+    total: list[Scalar],
+) -> list[Scalar]:
+    """Cutset equations: forces from the leaves to the root, projected on every freedom they pass."""
     for i in reversed(range(len(tree.links))):
         link = tree.links[i]
         set_label(algebra, f"forces, {caption(link)}")
@@ -147,14 +176,11 @@ def coordinate_rates(
     q, v = tuple(q), tuple(v)
     rates: list[Scalar] = [0] * len(tree.positions)
     for link in tree.links:
-        if any(f.ratio != 1 or f.offset != 0 for f in link.positions):
+        places = link.place.positions
+        if any(f.ratio != 1 or f.offset != 0 for f in places):
             continue
-        own = link.joint.rates(
-            algebra,
-            tuple(q[f.index] for f in link.positions),
-            tuple(v[f.index] for f in link.velocities),
-        )
-        for freedom, rate in zip(link.positions, own, strict=True):
+        own = link.joint.rates(algebra, *coordinates(link.place, q, v)) if places else ()
+        for freedom, rate in zip(places, own, strict=True):
             rates[freedom.index] = rate
     return rates
 
@@ -178,7 +204,7 @@ def _spins(
         velocity, angular, linear = _relative(arm, near.velocity)
         angular = add(arm.rotation.into(near.angular), angular)
         linear = add(arm.rotation.into(add(near.linear, _accelerated(near, arm.at))), linear)
-        if a is not None:
+        if a is not None and link.velocities:
             own = tuple(f.ratio * a[f.index] for f in link.velocities)
             angular = add(angular, vector.combine(own, arm.motion.angular))
             linear = add(linear, vector.combine(own, arm.motion.linear))
@@ -200,6 +226,9 @@ def _relative(arm: Arm, near: Vector) -> tuple[Vector, Vector, Vector]:
     angular = add(cross(carried_w, w), motion.angular_bias)
     # Coriolis: the relative velocity u turns with the near link (twice) and with the joint
     linear = add(cross(add(velocity, carried_w), u), motion.linear_bias)
+    if arm.prescribed:
+        angular = add(angular, vector.combine(arm.prescribed, motion.angular))
+        linear = add(linear, vector.combine(arm.prescribed, motion.linear))
     return velocity, angular, linear
 
 
@@ -307,10 +336,6 @@ def applied_to(j: Inertia, a: Vector) -> Vector:
         xy * a[0] + yy * a[1] + yz * a[2],
         xz * a[0] + yz * a[1] + zz * a[2],
     )
-
-
-def _coordinate(freedom: Freedom, q: tuple[Scalar, ...]) -> Scalar:
-    return freedom.ratio * q[freedom.index] + freedom.offset
 
 
 def caption(link: Link) -> str:

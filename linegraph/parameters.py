@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from linegraph.errors import ModelError
+from linegraph.formula import Formula, parse
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from linegraph.algebra import Algebra
     from linegraph.vector import Scalar
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class Parameter:
     """A named number: its default value, unit and meaning.
+
+    With an expression of other parameters for its value it is *derived*: computed wherever it is used.
 
     It calculates as the sympy symbol of its name, so ``m * l**2 / 3`` is a sympy expression.
 
@@ -27,9 +30,14 @@ class Parameter:
     """
 
     name: str
-    value: float | None = None
+    value: Any = None
     unit: str = ""
     about: str = ""
+
+    @property
+    def derived(self) -> bool:
+        """Whether the value is an expression of other parameters."""
+        return self.value is not None and not is_number(self.value)
 
     def _sympy_(self) -> Any:
         from sympy import Symbol
@@ -67,26 +75,60 @@ class Parameter:
         return self._sympy_() ** other
 
 
+@dataclass(frozen=True)
+class Input(Parameter):
+    """A named input u: known at run time, it may stand in laws and prescribed motions."""
+
+
 def is_number(x: Any) -> bool:
-    """Whether a model value is a plain number, not a parameter or an expression."""
-    return not isinstance(x, Parameter) and not hasattr(x, "free_symbols")
+    """Whether a model value is a plain number: not a name, a text or an expression."""
+    return not isinstance(x, (Parameter, str, Formula)) and not hasattr(x, "free_symbols")
 
 
-def resolver(algebra: Algebra, parameters: Mapping[str, Scalar]) -> Callable[[Any], Scalar]:
+def resolver(algebra: Algebra, values: Mapping[str, Scalar]) -> Callable[[Any], Scalar]:
     """A function from model values to scalars of `algebra`.
 
-    Numbers stay numbers, parameters are looked up in `parameters`, sympy expressions are walked.
+    Numbers stay numbers, parameters are looked up in `values`, texts are parsed, formulas and sympy
+    expressions are walked.
     """
 
     def resolve(x: Any) -> Scalar:
+        if isinstance(x, str):
+            x = parse(x)
+        if isinstance(x, Formula):
+            return x.evaluate(algebra, values)
         if isinstance(x, Parameter):
-            if x.name not in parameters:
+            if x.name not in values:
                 raise ModelError(f'parameter "{x.name}"', "does not belong to this model")
-            return parameters[x.name]
+            return values[x.name]
         if hasattr(x, "free_symbols"):
             from linegraph.symbols import evaluate
 
-            return evaluate(x, algebra, parameters)
+            return evaluate(x, algebra, values)
         return x
 
     return resolve
+
+
+def valued(
+    parameters: Iterable[Parameter], algebra: Algebra, given: Callable[[Parameter], Scalar]
+) -> dict[str, Scalar]:
+    """The scalar of every parameter: `given` for independent ones, their expression for derived ones."""
+    values: dict[str, Scalar] = {}
+    for parameter in parameters:
+        if parameter.derived:
+            values[parameter.name] = resolver(algebra, values)(parameter.value)
+        else:
+            values[parameter.name] = given(parameter)
+    return values
+
+
+def names_in(x: Any) -> set[str]:
+    """The names a model value depends on; rates as ``der(x)``."""
+    if isinstance(x, str):
+        x = parse(x)
+    if isinstance(x, Formula):
+        return set(x.names())
+    if isinstance(x, Parameter):
+        return {x.name}
+    return {symbol.name for symbol in getattr(x, "free_symbols", ())}

@@ -138,6 +138,17 @@ def assemble(
     return Program(name, about, arguments, steps, results, turned, checks, calls, status)
 
 
+def live_nodes(program: Program) -> list[Node]:
+    """All nodes that a program's results and checks need, each after its operands."""
+    return _live(_roots(program.results, program.checks))
+
+
+def reads(argument: str, results: tuple[Result, ...]) -> bool:
+    """Whether any result depends on an argument of this name."""
+    live = _live(_roots(results, ()))
+    return any(node.op == SYMBOL and node.a == argument for node in live)
+
+
 def _roots(results: tuple[Result, ...], checks: tuple[Check, ...]) -> list[Node]:
     roots = [entry for result in results for entry in result.entries if isinstance(entry, Node)]
     for check in checks:

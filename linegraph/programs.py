@@ -10,18 +10,27 @@ from linegraph.articulated import forward_dynamics
 from linegraph.errors import ModelError
 from linegraph.expression import Dag, Node
 from linegraph.factorization import Solution, solve
+from linegraph.loads import Applied, applied
 from linegraph.mass_matrix import mass_matrix
-from linegraph.program import Argument, Call, Check, Module, Program, Quantity, Result, assemble
+from linegraph.parameters import valued
+from linegraph.program import (
+    Argument,
+    Call,
+    Check,
+    Module,
+    Program,
+    Quantity,
+    Result,
+    assemble,
+    reads,
+)
 from linegraph.regularity import SINGULAR, is_solid
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from linegraph.derive import Derivation
-    from linegraph.kinematics import KinematicTree
     from linegraph.vector import Scalar
-
-EFFORT_UNITS = {"rad/s": "N*m", "m/s": "N"}
 
 
 def module_of(derivation: Derivation, name: str, *, folded: bool, about: Iterable[str]) -> Module:
@@ -46,9 +55,9 @@ def module_of(derivation: Derivation, name: str, *, folded: bool, about: Iterabl
         about=tuple(about),
         positions=tree.positions,
         velocities=tree.velocities,
-        inputs=inputs_of(tree),
+        inputs=tree.inputs,
         parameters=() if folded else parameters,
-        time=False,
+        time=derivation.model.depends_on_time,
         programs=programs,
     )
 
@@ -58,30 +67,68 @@ class _Functions:
 
     def __init__(self, derivation: Derivation, folded: bool) -> None:
         self.dag = Dag()
-        self._parameters = not folded
-        values: dict[str, Scalar] = {
-            p.name: p.value if folded else self.dag.symbol("p", p.name)
-            for p in derivation.model.parameters.values()
-        }
-        self.tree = derivation.tree(self.dag, values)
+        self._model = derivation.model
+        self._head = ["p"] if not folded else []
+        self._head += ["t"] if derivation.model.depends_on_time else []
+        self._values = valued(
+            derivation.model.parameters.values(),
+            self.dag,
+            lambda p: p.value if folded else self.dag.symbol("p", p.name),
+        )
+        self.tree = derivation.tree(self.dag, self._values)
         self.short = self.tree.regrouped()
-        self.q = self._symbols("q", len(self.tree.positions))
-        self.v = self._symbols("v", len(self.tree.velocities))
+        self._sizes = {
+            "q": len(self.tree.positions),
+            "v": len(self.tree.velocities),
+            "a": len(self.tree.velocities),
+            "u": len(self.tree.inputs),
+        }
+        self.q = self.symbols("q")
+        self.v = self.symbols("v")
 
-    def _symbols(self, name: str, size: int) -> list[Scalar]:
-        return [self.dag.symbol(name, i) for i in range(size)]
+    def symbols(self, name: str) -> list[Scalar]:
+        """The entries of an argument."""
+        return [self.dag.symbol(name, i) for i in range(self._sizes[name])]
 
-    def arguments(self, *names: str) -> tuple[Argument, ...]:
-        """The named arguments in the order of the contract, parameters first where there are any."""
-        sizes = {"q": len(self.q), "v": len(self.v), "a": len(self.v), "u": len(self.tree.inputs)}
-        given = [Argument(name, sizes[name], ARGUMENTS[name]) for name in names]
-        if self._parameters:
-            given.insert(0, Argument("p", None, ARGUMENTS["p"]))
-        return tuple(given)
+    def program(
+        self,
+        name: str,
+        about: str,
+        arguments: tuple[str, ...],
+        results: tuple[Result, ...],
+        checks: tuple[Check, ...] = (),
+        calls: tuple[Call, ...] = (),
+        *,
+        status: bool = False,
+    ) -> Program:
+        """Assemble a function; the arguments follow the contract's order ``p, t, q, v, u, a``.
 
-    def inputs(self, name: str, size: int) -> list[Scalar]:
-        """The entries of another argument."""
-        return self._symbols(name, size)
+        Parameters and time are there exactly when the model has them, inputs when the results need them.
+        """
+        if "u" not in arguments and reads("u", results):
+            place = sum(argument in ("q", "v") for argument in arguments)
+            arguments = (*arguments[:place], "u", *arguments[place:])
+        given = tuple(
+            Argument(argument, self._sizes.get(argument), ARGUMENTS[argument])
+            for argument in (*self._head, *arguments)
+        )
+        return assemble(name, about, given, results, checks, calls, status=status)
+
+    @cached_property
+    def passive(self) -> Applied:
+        """Springs, dampers and loads that no input drives: part of the bias."""
+        return self._applied(driven=False)
+
+    @cached_property
+    def active(self) -> Applied:
+        """Elements and loads that inputs drive: part of Q."""
+        return self._applied(driven=True)
+
+    def _applied(self, *, driven: bool) -> Applied:
+        state = (tuple(self.q), tuple(self.v))
+        return applied(
+            self._model, self.short, self.dag, self._values, self.arms, *state, driven=driven
+        )
 
     @cached_property
     def arms(self) -> list[orthogonality.Arm]:
@@ -104,21 +151,24 @@ class _Functions:
 
     @cached_property
     def efforts(self) -> list[Scalar]:
-        """Q: the inputs, each at its velocity."""
-        efforts: list[Scalar] = [0] * len(self.v)
-        for k, index in enumerate(self.tree.inputs):
-            efforts[index] = self.dag.symbol("u", k)
+        """Q: joint efforts at their velocities, and what driven elements do."""
+        efforts = orthogonality.generalised_forces(self.short, self.dag, self.arms, self.active)
+        for index, k in self.tree.layout.efforts:
+            efforts[index] = efforts[index] + self.dag.symbol("u", k)
         return efforts
 
     @cached_property
     def bias(self) -> Result:
         """The bias h as a result."""
-        entries = orthogonality.inverse_dynamics(self.short, self.dag, self.arms)
+        entries = orthogonality.inverse_dynamics(
+            self.short, self.dag, self.arms, applied=self.passive
+        )
         return Result("h", (len(entries),), tuple(entries), "bias vector")
 
 
 ARGUMENTS = {
     "p": "parameters",
+    "t": "time (s)",
     "q": "coordinates",
     "v": "velocities",
     "a": "accelerations, the derivatives of v",
@@ -127,25 +177,25 @@ ARGUMENTS = {
 
 
 def _mass_matrix(f: _Functions) -> Program:
-    return assemble("mass_matrix", "Mass matrix M(q).", f.arguments("q"), (f.mass_matrix,))
+    return f.program("mass_matrix", "Mass matrix M(q).", ("q",), (f.mass_matrix,))
 
 
 def _bias(f: _Functions) -> Program:
     about = "Bias h(q, v): gravity, Coriolis and centrifugal terms."
-    return assemble("bias", about, f.arguments("q", "v"), (f.bias,))
+    return f.program("bias", about, ("q", "v"), (f.bias,))
 
 
 def _equations(f: _Functions) -> Program:
     about = "Mass matrix M(q) and bias h(q, v) at once, sharing work."
-    return assemble("equations", about, f.arguments("q", "v"), (f.mass_matrix, f.bias))
+    return f.program("equations", about, ("q", "v"), (f.mass_matrix, f.bias))
 
 
 def _inverse_dynamics(f: _Functions) -> Program:
-    a = f.inputs("a", len(f.v))
-    tau = orthogonality.inverse_dynamics(f.short, f.dag, f.arms, a)
+    a = f.symbols("a")
+    tau = orthogonality.inverse_dynamics(f.short, f.dag, f.arms, a, f.passive)
     result = Result("tau", (len(tau),), tuple(tau), "generalised forces along v")
     about = "Inverse dynamics tau = M(q) a + h(q, v), without forming M."
-    return assemble("inverse_dynamics", about, f.arguments("q", "v", "a"), (result,))
+    return f.program("inverse_dynamics", about, ("q", "v", "a"), (result,))
 
 
 def _forward_dynamics(f: _Functions) -> Program:
@@ -161,7 +211,9 @@ def _forward_dynamics(f: _Functions) -> Program:
 
 
 def _articulated(f: _Functions) -> Program:
-    solution = forward_dynamics(f.short, f.dag, f.arms, f.efforts)
+    passive = orthogonality.generalised_forces(f.short, f.dag, f.arms, f.passive)
+    total = [effort + load for effort, load in zip(f.efforts, passive, strict=True)]
+    solution = forward_dynamics(f.short, f.dag, f.arms, total)
     return _solved(f, solution, [0] * len(solution.pivots), ())
 
 
@@ -177,7 +229,7 @@ def _factored(f: _Functions) -> Program:
     ]
     solution = solve(rows, right, f.tree.outward)
     local = (Argument("M", size * size, "mass matrix"), Argument("h", size, "bias vector"))
-    names = tuple(argument.name for argument in f.arguments("q", "v"))
+    names = tuple(argument.name for argument in _equations(f).arguments)
     bounds = [SINGULAR * rows[i][i] for i in range(size)]
     return _solved(f, solution, bounds, (Call("equations", names, local),))
 
@@ -203,25 +255,27 @@ def _solved(
     accelerations = tuple(solution.unknowns)
     result = Result("a", (len(accelerations),), accelerations, ARGUMENTS["a"])
     about = "Forward dynamics a = M(q)^-1 (Q(u) - h(q, v))."
-    given = f.arguments("q", "v", "u")
-    return assemble("forward_dynamics", about, given, (result,), checks, calls, status=True)
+    given = ("q", "v", "u")
+    return f.program("forward_dynamics", about, given, (result,), checks, calls, status=True)
 
 
 def _coordinate_rates(f: _Functions) -> Program:
     rates = orthogonality.coordinate_rates(f.tree, f.dag, f.q, f.v)
     result = Result("qdot", (len(rates),), tuple(rates), "derivatives of q")
     about = "Coordinate rates qdot = N(q) v."
-    return assemble("coordinate_rates", about, f.arguments("q", "v"), (result,))
+    return f.program("coordinate_rates", about, ("q", "v"), (result,))
 
 
 def _energy(f: _Functions) -> Program:
     crossed = orthogonality.arms(f.tree, f.dag, f.q, f.v)
-    entries = orthogonality.energy(f.tree, f.dag, crossed)
+    kinetic, potential = orthogonality.energy(f.tree, f.dag, crossed)
+    stored = potential + f.passive.potential
     about = (
-        "Kinetic and potential energy of all that moves; potential zero at the origin of ground."
+        "Kinetic and potential energy (gravity and springs) of all that moves; that of gravity is zero "
+        "at the origin of ground."
     )
-    result = Result("E", (2,), entries, "kinetic and potential energy (J)")
-    return assemble("energy", about, f.arguments("q", "v"), (result,))
+    result = Result("E", (2,), (kinetic, stored), "kinetic and potential energy (J)")
+    return f.program("energy", about, ("q", "v"), (result,))
 
 
 PROGRAMS: tuple[Callable[[_Functions], Program], ...] = (
@@ -236,20 +290,13 @@ PROGRAMS: tuple[Callable[[_Functions], Program], ...] = (
 """The register of emitted functions, in emitted order."""
 
 
-def inputs_of(tree: KinematicTree) -> tuple[Quantity, ...]:
-    """The efforts: one along each actuated velocity, of its name."""
-    quantities = []
-    for index in tree.inputs:
-        velocity = tree.velocities[index]
-        unit = EFFORT_UNITS[velocity.unit]
-        quantities.append(Quantity(velocity.name, unit, f"effort along {velocity.name}"))
-    return tuple(quantities)
-
-
 def _parameters(derivation: Derivation) -> tuple[Quantity, ...]:
+    """The independent parameters; derived ones are computed from them."""
     found = []
     for p in derivation.model.parameters.values():
+        if p.derived:
+            continue
         if p.value is None:
             raise ModelError(f'parameter "{p.name}"', "has no value, so no default can be emitted")
-        found.append(Quantity(p.name, p.unit, p.about, p.value))
+        found.append(Quantity(p.name, p.unit, p.about, float(p.value)))
     return tuple(found)

@@ -10,13 +10,14 @@ from linegraph.errors import ModelError
 from linegraph.kinematics import KinematicTree, Link, kinematic_tree
 from linegraph.mass_matrix import composites, mass_matrix
 from linegraph.orthogonality import arms
+from linegraph.parameters import Parameter, valued
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
+    from linegraph.algebra import Algebra
     from linegraph.joints import Moments
     from linegraph.model import Model
     from linegraph.topology import Topology
+    from linegraph.vector import Scalar
 
 SINGULAR = 1e-13
 """A pivot of M below this fraction of what it was made of is zero up to rounding."""
@@ -31,8 +32,9 @@ def require_regular(model: Model, topology: Topology) -> None:
     Raises:
         ModelError: names the joint.
     """
-    tree = kinematic_tree(model, topology, Floats(), _sample_values(model))
-    if not tree.links:
+    anywhere = Floats(t=0.37, u=_Anything())
+    tree = kinematic_tree(model, topology, anywhere, _sample_values(model, anywhere))
+    if not tree.velocities:
         raise ModelError(f'model "{model.name}"', "no joint can move: there is nothing to derive")
     if all(is_solid(link) for link in tree.links):
         return
@@ -55,19 +57,27 @@ def _refusal(link: Link, pivot: float) -> ModelError:
     return ModelError(who, problem)
 
 
-def _sample_values(model: Model) -> Mapping[str, float]:
+class _Anything:
+    """Inputs at which regularity is judged: it does not depend on them, but motions may."""
+
+    def __getitem__(self, place: int) -> float:
+        return 0.1 + 0.07 * place
+
+
+def _sample_values(model: Model, algebra: Algebra) -> dict[str, Scalar]:
     """Each parameter's value, or some positive number where it has none."""
     draw = random.Random(0)
-    return {
-        p.name: p.value if p.value is not None else draw.uniform(0.5, 2.0)
-        for p in model.parameters.values()
-    }
+
+    def given(parameter: Parameter) -> float:
+        return draw.uniform(0.5, 2.0) if parameter.value is None else float(parameter.value)
+
+    return valued(model.parameters.values(), algebra, given)
 
 
 def is_solid(link: Link) -> bool:
-    """Whether the mass and the central inertia are positive, with a margin for rounding."""
+    """Whether mass and central inertia are positive, with a margin, and the joint's freedoms independent."""
     m, (x, y, z), (xx, xy, xz, yy, yz, zz) = link.moments
-    if m <= 0:
+    if m <= 0 or link.joint.singular:
         return False
     cx, cy, cz = x / m, y / m, z / m
     a = xx - m * (cy * cy + cz * cz)
@@ -84,9 +94,7 @@ def _first_dependent(tree: KinematicTree, seed: int) -> tuple[int, float] | None
     """The coordinate at which the factorisation of M from the leaves fails, and its pivot; or None."""
     draw = random.Random(seed)
     q = [draw.uniform(-1, 1) for _ in tree.positions]
-    for link in tree.links:
-        if len(link.positions) > len(link.velocities):
-            _normalise(q, [f.index for f in link.positions][-4:])
+    tree.normalise(q)
     crossed = arms(tree, Floats(), q, [0.0] * len(tree.velocities))
     rows = mass_matrix(tree, Floats(), crossed)
     return _failing_pivot(rows, _scales(tree, composites(tree, Floats(), crossed)), tree.outward)
@@ -101,12 +109,6 @@ def _scales(tree: KinematicTree, carried: list[Moments]) -> list[float]:
         for freedom in link.velocities:
             scales[freedom.index] += freedom.ratio**2 * largest
     return scales
-
-
-def _normalise(q: list[float], places: Sequence[int]) -> None:
-    length = sum(q[i] ** 2 for i in places) ** 0.5
-    for i in places:
-        q[i] /= length
 
 
 def _failing_pivot(

@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from linegraph.domains import DOMAINS
-from linegraph.expression import Dag
 from linegraph.parameters import Parameter
-from linegraph.programs import inputs_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -30,10 +28,7 @@ def show(derivation: Derivation, heading: Callable[[str], str] = str) -> str:
         derivation: the derived model.
         heading: how to decorate a heading, e.g. in bold on a terminal.
     """
-    dag = Dag()
-    tree = derivation.tree(
-        dag, {name: dag.symbol("p", name) for name in derivation.model.parameters}
-    )
+    tree = derivation.structure
     sections = (
         (f"model {derivation.model.name}", _summary(derivation, tree)),
         ("bodies", _bodies(derivation.model)),
@@ -119,7 +114,7 @@ def _tree(tree: KinematicTree) -> Lines:
 
 
 def _coordinates(tree: KinematicTree) -> Lines:
-    listed = {"q": tree.positions, "v": tree.velocities, "u": inputs_of(tree)}
+    listed = {"q": tree.positions, "v": tree.velocities, "u": tree.inputs}
     return _table(
         (f"{symbol}[{i}]", quantity.name, quantity.unit, quantity.about)
         for symbol, quantities in listed.items()

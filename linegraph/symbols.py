@@ -10,8 +10,12 @@ import sympy
 from linegraph import orthogonality
 from linegraph.errors import ModelError
 from linegraph.expression import Dag, Node
+from linegraph.functions import ARITY
+from linegraph.loads import Applied, applied
 from linegraph.mass_matrix import mass_matrix
 from linegraph.paper import PaperMatrices, paper_matrices
+from linegraph.paper_print import PrintedMatrices, printed_matrices
+from linegraph.parameters import valued
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -24,7 +28,8 @@ if TYPE_CHECKING:
 Expr: TypeAlias = Any
 """A sympy expression; sympy carries no types."""
 
-FUNCTIONS = ("sin", "cos", "sqrt")
+RENAMED = {"abs": "Abs", "min": "Min", "max": "Max"}
+"""Functions that sympy calls otherwise."""
 
 
 class Sympy:
@@ -48,6 +53,10 @@ class Sympy:
     cos = staticmethod(sympy.cos)
     sqrt = staticmethod(sympy.sqrt)
 
+    def function(self, name: str, *x: Expr) -> Expr:
+        """Any function of `functions.ARITY`."""
+        return getattr(sympy, RENAMED.get(name, name))(*x)
+
 
 class Symbolic:
     """A derivation's equations as sympy objects.
@@ -61,18 +70,12 @@ class Symbolic:
 
     def __init__(self, derivation: Derivation) -> None:
         """Derive over sympy; nothing is simplified until asked for."""
-        parameters = {name: sympy.Symbol(name) for name in derivation.model.parameters}
-        plain = derivation.tree(Sympy(), parameters)
-        positions = [quantity.name for quantity in plain.positions]
-        rates = [quantity.name for quantity in plain.velocities]
-        rates = [f"{name}_dot" if name in positions else name for name in rates]
-        for name in {*positions, *rates} & parameters.keys():
-            raise ModelError(f'parameter "{name}"', "has the name of a coordinate; rename one")
-        for name in {name for name in rates if name in positions}:
-            problem = "is the name of a coordinate and of a rate; rename a joint"
-            raise ModelError(f'coordinate "{name}"', problem)
-        self.algebra = Sympy({"q": positions, "v": rates})
-        self.tree: KinematicTree = plain
+        self._model = derivation.model
+        positions, rates, inputs = _names(derivation.structure, derivation.model.parameters)
+        self.algebra = Sympy({"q": positions, "v": rates, "u": inputs})
+        declared = derivation.model.parameters.values()
+        self._parameters = valued(declared, self.algebra, lambda p: sympy.Symbol(p.name))
+        self.tree: KinematicTree = derivation.tree(self.algebra, self._parameters)
         self.q = sympy.Matrix([sympy.Symbol(name) for name in positions])
         self.v = sympy.Matrix([sympy.Symbol(name) for name in rates])
 
@@ -89,7 +92,9 @@ class Symbolic:
     @cached_property
     def bias(self) -> Expr:
         """h(q, v) as a sympy column Matrix, simplified entry by entry."""
-        rows = orthogonality.inverse_dynamics(self.tree, self.algebra, self._arms)
+        rows = orthogonality.inverse_dynamics(
+            self.tree, self.algebra, self._arms, applied=self._applied
+        )
         return sympy.Matrix(rows).applyfunc(simplified)
 
     @cached_property
@@ -99,9 +104,47 @@ class Symbolic:
 
     @cached_property
     def energy(self) -> tuple[Expr, Expr]:
-        """Kinetic and potential energy."""
+        """Kinetic and potential energy, that of springs included."""
         kinetic, potential = orthogonality.energy(self.tree, self.algebra, self._arms)
-        return simplified(kinetic), simplified(potential)
+        return simplified(kinetic), simplified(potential + self._applied.potential)
+
+    @cached_property
+    def printed_matrices(self) -> PrintedMatrices:
+        """All matrices of the paper in its own form of 2n - 1 chords, over sympy and not simplified."""
+        return printed_matrices(self.tree, self.algebra, list(self.q), list(self.v))
+
+    @cached_property
+    def _applied(self) -> Applied:
+        """Elements and loads that no input drives."""
+        state = (tuple(self.q), tuple(self.v))
+        return applied(
+            self._model, self.tree, self.algebra, self._parameters, self._arms, *state, driven=False
+        )
+
+
+def _names(
+    tree: KinematicTree, parameters: Mapping[str, Any]
+) -> tuple[list[str], list[str], list[str]]:
+    """What positions, velocities and inputs are called; no two alike.
+
+    Raises:
+        ModelError: a name stands for two things.
+    """
+    positions = [quantity.name for quantity in tree.positions]
+    rates = [quantity.name for quantity in tree.velocities]
+    rates = [f"{name}_dot" if name in positions else name for name in rates]
+    inputs = [
+        f"u_{quantity.name}" if quantity.name in (*positions, *rates) else quantity.name
+        for quantity in tree.inputs
+    ]
+    for name in parameters:
+        if name in positions or name in rates:
+            raise ModelError(f'parameter "{name}"', "has the name of a coordinate; rename one")
+    for name in rates:
+        if name in positions:
+            problem = "is the name of a coordinate and of a rate; rename a joint"
+            raise ModelError(f'coordinate "{name}"', problem)
+    return positions, rates, inputs
 
 
 def simplified(expression: Expr) -> Expr:
@@ -156,10 +199,15 @@ def _apply(e: Expr, parts: list[Scalar], algebra: Algebra) -> Scalar:
         return _fold(lambda a, b: a * b, parts)
     if e.is_Pow:
         return power(parts[0], e.exp, algebra)
-    name = e.func.__name__
-    if name in FUNCTIONS:
-        return getattr(algebra, name)(parts[0])
+    name = _OURS.get(e.func.__name__, e.func.__name__)
+    if name in ("min", "max"):
+        return _fold(lambda a, b: algebra.function(name, a, b), parts)
+    if ARITY.get(name) == len(parts):
+        return algebra.function(name, *parts)
     raise ModelError("", f"{name}(...) in {e} has no counterpart in emitted code")
+
+
+_OURS = {theirs: ours for ours, theirs in RENAMED.items()}
 
 
 def power(base: Scalar, exponent: Expr, algebra: Algebra) -> Scalar:
@@ -213,12 +261,11 @@ def _shown(node: Node, known: Mapping[int, Expr], algebra: Sympy) -> Expr:
         "sub": lambda a, b: a - b,
         "mul": lambda a, b: a * b,
         "div": lambda a, b: a / b,
-        "sin": sympy.sin,
-        "cos": sympy.cos,
-        "sqrt": sympy.sqrt,
     }
     operands = [operand(x) for x in (node.a, node.b) if x is not None]
-    return actions[node.op](*operands)
+    if node.op in actions:
+        return actions[node.op](*operands)
+    return algebra.function(node.op, *operands)
 
 
 def _fold(action: Callable[[Scalar, Scalar], Scalar], parts: list[Scalar]) -> Scalar:

@@ -359,7 +359,7 @@ def test_the_papers_equations_in_matrix_form() -> None:
 def test_programs_over_the_dag_have_the_numbers_of_the_floats(seed: int) -> None:
     spec, derivation, numeric, states = case(seed)
     module = module_of(derivation, "m", folded=True, about=())
-    actuated = list(numeric.tree.inputs)
+    actuated = [velocity for velocity, _ in numeric.tree.layout.efforts]
     for q, v, a in states:
         q_, v_, a_ = floats(q), floats(v), floats(a)
         mass = numeric.mass_matrix(q_)

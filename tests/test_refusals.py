@@ -20,6 +20,7 @@ import sympy
 from linegraph import LinegraphError, Model, ModelError, Parameter, SourceError, derive
 from linegraph.joints import Moments, Revolute
 from linegraph.kinematics import Link
+from linegraph.layout import Place
 from linegraph.regularity import is_solid
 from linegraph.rotation import Rotation
 from linegraph.vector import ZERO
@@ -512,11 +513,11 @@ def test_a_chain_of_couplings_is_composed() -> None:
     model.couple("j1", "j2", ratio=2, offset=7)
     model.couple("j2", "j3", ratio=3, offset=5)
     tree = derive(model).numeric().tree
-    first = tree.links[0].positions[0]
+    first = tree.links[0].place.positions[0]
     assert (first.index, first.ratio, first.offset) == (0, 6, 17)
     assert tree.links[0].velocities[0].ratio == 6
     assert [quantity.name for quantity in tree.positions] == ["j3"]
-    assert tree.inputs == (0,)
+    assert tree.layout.efforts == [(0, 0)]
 
 
 def test_only_joints_that_exist_can_be_locked() -> None:
@@ -676,7 +677,7 @@ def random_moments(rng: np.random.Generator, principal: list[float], mass: float
     upper = tuple(float(about[i, j]) for i in range(3) for j in range(i, 3))
     moments = Moments(mass, tuple((mass * center).tolist()), upper)  # type: ignore[arg-type]
     joint = Revolute("j", ("ground", "b"))
-    return Link("b", -1, joint, True, Rotation(), ZERO, (), (), moments)
+    return Link("b", -1, joint, True, Rotation(), ZERO, Place(), moments)
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -810,6 +811,23 @@ def test_of_several_wrong_names_the_same_is_named_each_time() -> None:
         for seed in range(6)
     }
     assert found == {'coordinate "a_x": two coordinates have this name; rename a joint\n'}
+
+
+@pytest.mark.parametrize(
+    "build",
+    [
+        lambda m: m.revolute("j", between=("ground", m.body("b", mass=1)), axis=("print(1)", 0, 1)),
+        lambda m: m.ground.frame("f", rpy=("print(1)", 0, 0)),
+        lambda m: m.ground.frame("f", axis=(0, 0, 1), angle="print(1)"),
+    ],
+    ids=["axis", "rpy", "angle"],
+)
+def test_text_never_reaches_sympy(
+    build: Callable[[Model], Any], capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(ModelError, match="not text"):
+        build(Model("m"))
+    assert capsys.readouterr().out == ""
 
 
 # ---- the errors themselves

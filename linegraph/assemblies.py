@@ -1,0 +1,80 @@
+"""Words that stand for several components: the rotor behind a gear, and the basement."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from linegraph.body import GROUND
+from linegraph.checks import vector
+from linegraph.errors import ModelError
+from linegraph.joints import Compound, Revolute
+from linegraph.joints.base import BY_INPUT
+from linegraph.vector import ZERO
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from linegraph.model import Model
+    from linegraph.words import BodyHandle
+
+BASEMENT = "basement"
+_AXES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
+_SLIDES = tuple(("prismatic", axis, {"name": name}) for name, axis in _AXES.items())
+
+
+def add_rotor(model: Model, name: str, joint: str, inertia: Any, ratio: Any) -> BodyHandle:
+    """A body with inertia about a revolute joint's axis alone, in the joint's tail, turning `ratio` times.
+
+    Raises:
+        ModelError: the joint is not a revolute joint of this model.
+    """
+    found = {known.name: known for known in model.joints}.get(joint)
+    if not isinstance(found, Revolute):
+        raise ModelError(f'rotor "{name}"', f'"{joint}" is not a revolute joint of this model')
+    x, y, z = found.axis
+    about = {"xx": (x, x), "xy": (x, y), "xz": (x, z), "yy": (y, y), "yz": (y, z), "zz": (z, z)}
+    tensor = {key: _product(inertia, a, b) for key, (a, b) in about.items() if a != 0 and b != 0}
+    handle = model.body(name, inertia=tensor)
+    model.add_joint(Revolute(name, (found.between[0], name), found.axis, effort=False))
+    model.couple(name, found, ratio)
+    return handle
+
+
+def add_basement(model: Model, position: Any, rotation: Any) -> BodyHandle:
+    """A massless body on a compound joint whose motion is prescribed.
+
+    Raises:
+        ModelError: position or rotation have another form.
+    """
+    place = (BY_INPUT,) * 3 if position == BY_INPUT else vector(position or ZERO, BASEMENT)
+    turns, angles = _turns({"rpy": BY_INPUT} if rotation == BY_INPUT else rotation or {})
+    parts = (*_SLIDES, *turns)
+    handle = model.body(BASEMENT)
+    drive = (*place, *angles)
+    ends = (GROUND, BASEMENT)
+    model.add_joint(Compound(BASEMENT, ends, effort=False, drive=drive, parts=parts))
+    return handle
+
+
+def _turns(rotation: Mapping[str, Any]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    """The parts and angles of a basement's rotation, from ground inward."""
+    if not rotation:
+        return (), ()
+    if set(rotation) == {"axis", "angle"}:
+        axis = vector(rotation["axis"], BASEMENT)
+        return (("revolute", axis, {"name": "angle"}),), (rotation["angle"],)
+    if set(rotation) != {"rpy"}:
+        raise ModelError(BASEMENT, "rotation takes axis and angle, or rpy")
+    rpy = rotation["rpy"]
+    roll, pitch, yaw = (BY_INPUT,) * 3 if rpy == BY_INPUT else vector(rpy, BASEMENT)
+    order = (("yaw", "z"), ("pitch", "y"), ("roll", "x"))
+    parts = tuple(("revolute", _AXES[axis], {"name": name}) for name, axis in order)
+    return parts, (yaw, pitch, roll)
+
+
+def _product(inertia: Any, a: Any, b: Any) -> Any:
+    """``inertia a b``, also where the inertia is given as text."""
+    factor = a * b
+    if factor == 1:
+        return inertia
+    return f"({inertia})*({factor})" if isinstance(inertia, str) else inertia * factor

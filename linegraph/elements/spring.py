@@ -1,0 +1,49 @@
+"""The spring: linear by its stiffness, or by any law."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from linegraph.elements.base import Element
+
+if TYPE_CHECKING:
+    from linegraph.algebra import Algebra
+    from linegraph.elements.base import Resolve
+    from linegraph.vector import Scalar
+
+
+@dataclass(frozen=True)
+class Spring(Element):
+    """A spring: ``through = stiffness (x - length)``, or `force` as a law of the stretch and its rate.
+
+    Attributes:
+        stiffness: N/m, or N m/rad in a revolute joint.
+        length: x of the unstrained spring.
+        force: instead of `stiffness`, an expression in x, the stretch beyond `length`, and v, its rate.
+
+    Example:
+        >>> Spring("strut", ("ground", "cart"), stiffness=200.0, length=0.4).kind
+        'spring'
+    """
+
+    stiffness: Any = None
+    length: Any = 0
+    force: Any = None
+    kind = "spring"
+    laws = ("force",)
+    needs = (("stiffness", "force"),)
+
+    def through(self, algebra: Algebra, x: Scalar, v: Scalar, resolve: Resolve) -> Scalar:
+        """The tension."""
+        stretch = x - resolve(self.length)
+        if self.force is not None:
+            return resolve(self.force, x=stretch, v=v)
+        return resolve(self.stiffness) * stretch
+
+    def potential(self, algebra: Algebra, x: Scalar, resolve: Resolve) -> Scalar:
+        """Half the stiffness times the stretch squared; none is known for a law."""
+        if self.force is not None:
+            return 0
+        stretch = x - resolve(self.length)
+        return resolve(self.stiffness) * (stretch * stretch) / 2
