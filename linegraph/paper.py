@@ -1,8 +1,11 @@
-"""The paper's own matrices, multiplied out: P, H, C, S, K and the literal (13)-(15).
+"""The paper's matrices in joint form, multiplied out: P, H, C, S, K and the literal (13)-(15).
 
 For reading and for proving the recursive route; `orthogonality` is what gets emitted. Vectors are resolved
 in ground axes. Restated from Boiadzhiev & Lilov, "The orthogonality principle", J. Theor. Appl. Mech.
-(Sofia) XXIV(1), 1993.
+(Sofia) XXIV(1), 1993, with one row and column for each joint; `paper_print` has their star tree itself.
+
+A moving basement, and any other joint in prescribed motion, is a link like the others. It has no row in S
+and K; its motion enters the right-hand side, as ω̇_0 in ε and as r̈_0 in G.
 """
 
 from __future__ import annotations
@@ -11,6 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph import vector
+from linegraph.errors import ModelError
 from linegraph.orthogonality import Arm, arms
 from linegraph.rotation import IDENTITY_MATRIX, Full, Inertia, product
 from linegraph.vector import ZERO, Matrix, Scalar, Vector, add, cross, dot, scale, subtract
@@ -19,8 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from linegraph.algebra import Algebra
-    from linegraph.joints import Moments
-    from linegraph.kinematics import KinematicTree
+    from linegraph.kinematics import KinematicTree, Link
 
 Integers = list[list[int]]
 Vectors = list[list[Vector]]
@@ -32,9 +35,10 @@ class PaperMatrices:
 
     Attributes:
         P: joints x joints, the cutset matrix: P_kk = 1, P_kj = -1 where joint j sits on body k.
-        H: its inverse: H_kj = 1 where joint k lies on the path from the basement to body j.
+        H: its inverse: H_kj = 1 where joint k lies on the path from ground to body j.
         C: bodies x joints of arms: C_kk from joint k to the mass centre of k, C_pk from that of p to k.
-        S, K: coordinates x joints of unit vectors, rotational and translational.
+        S, K: coordinates x joints of unit vectors, rotational and translational; zero in the columns of
+            joints in prescribed motion.
         A, B: ``A v̇ = B`` without joint efforts: A is the mass matrix, -B the bias.
     """
 
@@ -47,8 +51,16 @@ class PaperMatrices:
     B: list[Scalar]
 
 
-class _Body(NamedTuple):
-    """A link resolved in ground axes."""
+class Resolved(NamedTuple):
+    """A link resolved in ground axes.
+
+    Attributes:
+        rotation: its working components to those of ground.
+        center: its mass centre from its origin.
+        inertia: about the mass centre.
+        angular: ω.
+        remainder: ε, what remains of ω̇ with v̇ = 0.
+    """
 
     rotation: Matrix
     center: Vector
@@ -67,16 +79,22 @@ def paper_matrices(
 
         A = (S H) I (S H)^T + Λ (H m H^T) Λ^T
         B = S H (T' - I ε - ω x I ω) + Λ H F' - Λ (H m H^T) G
+
+    Raises:
+        ModelError: a link without mass has a first moment, hence no mass centre.
     """
     crossed = arms(tree, algebra, q, v)
-    bodies = _bodies(tree, crossed)
+    bodies = resolved(tree, crossed)
     p, h = _topology(tree)
-    c = _arm_vectors(tree, crossed, bodies)
+    c = arm_vectors(tree, crossed, bodies)
     s, k = _axes(tree, crossed, bodies)
     sh = _gather(s, h)
     lam = _lever(s, h, c, k)
     mass = _carried_mass(h, bodies)
-    remainder = _remainders(tree, crossed, bodies, c)
+    remainder = [
+        add(head_remainder(tree, crossed, bodies, c, x), turned(body, c[x][x]))
+        for x, body in enumerate(bodies)
+    ]
     size, n = len(s), range(len(bodies))
     a = [[_quadratic(sh[i], sh[j], bodies) for j in range(size)] for i in range(size)]
     b: list[Scalar] = []
@@ -105,9 +123,17 @@ def _topology(tree: KinematicTree) -> tuple[Integers, Integers]:
     return p, h
 
 
-def _bodies(tree: KinematicTree, crossed: list[Arm]) -> list[_Body]:
-    """Orientation, angular velocity ω and its remainder ε with v̇ = 0, by H^T."""
-    bodies: list[_Body] = []
+def resolved(tree: KinematicTree, crossed: list[Arm]) -> list[Resolved]:
+    """Orientation, ω and ε of every link, by H^T.
+
+    ε_i = Σ_j H_ji w_j with w_j = ω_p x s q̇ + Σ_ab (∂s_a/∂q_b) q̇_a q̇_b, the second being the derivative of
+    the relative rotation inside a joint of several axes (W in the paper, (14)); a prescribed joint adds
+    s q̈, which is known.
+
+    Raises:
+        ModelError: a link without mass has a first moment.
+    """
+    bodies: list[Resolved] = []
     for link, arm in zip(tree.links, crossed, strict=True):
         near = bodies[link.parent] if link.parent >= 0 else None
         outer = near.rotation if near else IDENTITY_MATRIX
@@ -116,20 +142,42 @@ def _bodies(tree: KinematicTree, crossed: list[Arm]) -> list[_Body]:
         rotation = product(outer, arm.rotation.matrix())
         out = Full(rotation).out
         relative = out(vector.combine(arm.rates, arm.motion.angular))
-        w = add(cross(omega, relative), out(arm.motion.angular_bias))
-        mass, center, inertia = _central(link.moments)
+        w = add(cross(omega, relative), out(angular_remainder(arm)))
+        mass, center, inertia = _central(link)
         tensor = Full(_square(Full(rotation).congruence(inertia)))
         bodies.append(
-            _Body(rotation, out(center), mass, tensor, add(omega, relative), add(epsilon, w))
+            Resolved(rotation, out(center), mass, tensor, add(omega, relative), add(epsilon, w))
         )
     return bodies
 
 
-def _central(moments: Moments) -> tuple[Scalar, Vector, Inertia]:
-    """Mass, mass centre and central inertia; a massless link keeps its origin as centre."""
-    m, first, (xx, xy, xz, yy, yz, zz) = moments
+def angular_remainder(arm: Arm) -> Vector:
+    """The relative angular acceleration with v̇ = 0, seen in the head: W, and what is prescribed."""
+    known = vector.combine(arm.prescribed, arm.motion.angular) if arm.prescribed else ZERO
+    return add(arm.motion.angular_bias, known)
+
+
+def linear_remainder(arm: Arm) -> Vector:
+    """The relative acceleration of the head's origin with v̇ = 0, seen in the *tail*, in head axes."""
+    w = vector.combine(arm.rates, arm.motion.angular)
+    u = vector.combine(arm.rates, arm.motion.linear)
+    known = vector.combine(arm.prescribed, arm.motion.linear) if arm.prescribed else ZERO
+    return add(add(arm.motion.linear_bias, cross(w, u)), known)
+
+
+def _central(link: Link) -> tuple[Scalar, Vector, Inertia]:
+    """Mass, mass centre and central inertia; a massless link keeps its origin as centre.
+
+    Raises:
+        ModelError: it has no mass but a first moment.
+    """
+    m, first, (xx, xy, xz, yy, yz, zz) = link.moments
     if m == 0:
-        return m, ZERO, moments.inertia
+        if not vector.is_zero(first):
+            raise ModelError(
+                f'body "{link.name}"', "has a first moment but no mass, hence no centre"
+            )
+        return m, ZERO, link.moments.inertia
     x, y, z = (component / m for component in first)
     return (
         m,
@@ -145,8 +193,8 @@ def _central(moments: Moments) -> tuple[Scalar, Vector, Inertia]:
     )
 
 
-def _arm_vectors(tree: KinematicTree, crossed: list[Arm], bodies: list[_Body]) -> Vectors:
-    """C: from each joint to the mass centres of the bodies it joins."""
+def arm_vectors(tree: KinematicTree, crossed: list[Arm], bodies: list[Resolved]) -> Vectors:
+    """C: from each joint to the mass centre beyond it, and to it from the centre before it."""
     size = len(bodies)
     c: Vectors = [[ZERO] * size for _ in range(size)]
     for k, link in enumerate(tree.links):
@@ -157,7 +205,9 @@ def _arm_vectors(tree: KinematicTree, crossed: list[Arm], bodies: list[_Body]) -
     return c
 
 
-def _axes(tree: KinematicTree, crossed: list[Arm], bodies: list[_Body]) -> tuple[Vectors, Vectors]:
+def _axes(
+    tree: KinematicTree, crossed: list[Arm], bodies: list[Resolved]
+) -> tuple[Vectors, Vectors]:
     """S and K: what each coordinate turns and moves at each joint."""
     size, n = len(tree.velocities), len(bodies)
     s: Vectors = [[ZERO] * n for _ in range(size)]
@@ -187,44 +237,43 @@ def _lever(s: Vectors, h: Integers, c: Vectors, k: Vectors) -> Vectors:
     ]
 
 
-def _carried_mass(h: Integers, bodies: list[_Body]) -> list[list[Scalar]]:
+def _carried_mass(h: Integers, bodies: list[Resolved]) -> list[list[Scalar]]:
     """H m H^T: the mass that two joints both carry."""
     n = range(len(h))
     return [[sum(h[x][i] * bodies[i].mass * h[y][i] for i in n) for y in n] for x in n]
 
 
-def _remainders(
-    tree: KinematicTree, crossed: list[Arm], bodies: list[_Body], c: Vectors
-) -> list[Vector]:
-    """G: what remains, with v̇ = 0, of the acceleration that each joint's pair of arms adds."""
-    remainders = []
-    for k, link in enumerate(tree.links):
-        far, motion = bodies[k], crossed[k].motion
-        out = Full(far.rotation).out
-        u = out(vector.combine(crossed[k].rates, motion.linear))
-        w = out(vector.combine(crossed[k].rates, motion.angular))
-        g = add(_turned(far, c[k][k]), add(cross(w, u), out(motion.linear_bias)))
-        if link.parent >= 0:
-            near = bodies[link.parent]
-            g = add(g, _turned(near, c[link.parent][k]))
-            g = add(g, scale(2, cross(near.angular, u)))
-        remainders.append(g)
-    return remainders
+def head_remainder(
+    tree: KinematicTree, crossed: list[Arm], bodies: list[Resolved], c: Vectors, k: int
+) -> Vector:
+    """Acceleration of joint k's head less that of the centre before it, with v̇ = 0.
+
+    With that of the arm beyond the joint it makes G_k.
+    """
+    out = Full(bodies[k].rotation).out
+    g = out(linear_remainder(crossed[k]))
+    parent = tree.links[k].parent
+    if parent >= 0:
+        near = bodies[parent]
+        u = out(vector.combine(crossed[k].rates, crossed[k].motion.linear))
+        g = add(g, turned(near, c[parent][k]))
+        g = add(g, scale(2, cross(near.angular, u)))
+    return g
 
 
-def _turned(body: _Body, arm: Vector) -> Vector:
+def turned(body: Resolved, arm: Vector) -> Vector:
     """ε x arm + ω x (ω x arm)."""
     return add(cross(body.remainder, arm), cross(body.angular, cross(body.angular, arm)))
 
 
-def _euler(body: _Body) -> Vector:
+def _euler(body: Resolved) -> Vector:
     """I ε + ω x I ω."""
     return add(
         body.inertia.out(body.remainder), cross(body.angular, body.inertia.out(body.angular))
     )
 
 
-def _quadratic(a: list[Vector], b: list[Vector], bodies: list[_Body]) -> Scalar:
+def _quadratic(a: list[Vector], b: list[Vector], bodies: list[Resolved]) -> Scalar:
     """One entry of (S H) I (S H)^T."""
     return sum(dot(x, body.inertia.out(y)) for x, y, body in zip(a, b, bodies, strict=True))
 
