@@ -3,12 +3,20 @@
     LinegraphError
     ├── ModelError        the model says something that cannot be (a part, and why)
     │   └── SourceError   the same, with the file and the line that said it
+    ├── SourceErrors      all that is wrong with a file, at once
     └── NameRefused       a name that cannot appear in emitted code
 
 All carry one complete sentence for the user. A bug raises something else.
 """
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+MOST_PRINTED = 20
 
 
 class LinegraphError(Exception):
@@ -50,6 +58,25 @@ class SourceError(ModelError):
         """Render ``file:line: thing: problem``."""
         place = self.source if self.line is None else f"{self.source}:{self.line}"
         return f"{place}: {super().__str__()}"
+
+
+class SourceErrors(LinegraphError):
+    """Several errors of one file; as text one line each, not more than a screen of them.
+
+    Args:
+        errors: in the order of the file.
+    """
+
+    def __init__(self, errors: Iterable[SourceError]) -> None:
+        """Keep them all."""
+        self.errors = tuple(errors)
+        super().__init__("\n".join(self.messages()))
+
+    def messages(self) -> list[str]:
+        """One line for each error, then how many more there are."""
+        shown = [str(error) for error in self.errors[:MOST_PRINTED]]
+        more = len(self.errors) - len(shown)
+        return [*shown, f"and {more} more"] if more else shown
 
 
 class NameRefused(LinegraphError):

@@ -1,0 +1,158 @@
+"""Expressions in a file: parsed when read, their names looked up at once, evaluated later."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any
+
+from linegraph.algebra import Floats
+from linegraph.errors import ModelError
+from linegraph.formula import CONSTANTS, parse
+from linegraph.functions import ARITY
+
+if TYPE_CHECKING:
+    from linegraph.formula import Formula
+    from linegraph.modelfile.report import Spot
+
+LARGEST = 1e150
+"""Larger numbers overflow when squared."""
+
+
+class Scope(IntEnum):
+    """What an expression may name; each includes those before it."""
+
+    NUMBERS = 0
+    PARAMETERS = 1
+    TIME = 2
+    STATE = 3
+    LAW = 4
+
+
+ALLOWED = {
+    Scope.NUMBERS: "only numbers may stand here",
+    Scope.PARAMETERS: "only numbers and parameters may stand here",
+    Scope.TIME: "only numbers, parameters and the time t may stand here",
+    Scope.STATE: "numbers, parameters, t, inputs, coordinates and their rates der(...) may stand here",
+    Scope.LAW: "x, v, numbers, parameters, t, inputs, coordinates and their rates may stand here",
+}
+
+RESERVED = frozenset({"t", "der", "input", *CONSTANTS, *ARITY})
+"""Names with a meaning of their own in expressions."""
+
+
+@dataclass
+class Names:
+    """What a file declares, as far as it has been read.
+
+    Attributes:
+        parameters: their values; None where it could not be calculated.
+        inputs: the named inputs.
+        coordinates: of every joint read so far.
+        several: joints with several coordinates, and these.
+        terminals: bodies and frames, with the body each is of.
+        joints: every joint of the file and how many freedoms it has; None while that is not known.
+        incomplete: a joint is wrong, so that not all coordinates are known.
+    """
+
+    parameters: dict[str, float | None] = field(default_factory=dict)
+    inputs: set[str] = field(default_factory=set)
+    coordinates: set[str] = field(default_factory=set)
+    several: dict[str, list[str]] = field(default_factory=dict)
+    terminals: dict[str, str] = field(default_factory=dict)
+    joints: dict[str, int | None] = field(default_factory=dict)
+    incomplete: bool = False
+
+    def known(self, scope: Scope) -> list[str]:
+        """All that may be named in a scope."""
+        names: list[str] = list(self.parameters) if scope >= Scope.PARAMETERS else []
+        if scope >= Scope.TIME:
+            names.append("t")
+        if scope >= Scope.STATE:
+            names += [*self.inputs, *self.coordinates]
+        if scope >= Scope.LAW:
+            names += ["x", "v"]
+        return names
+
+
+def read_expression(text: str, scope: Scope, spot: Spot, names: Names) -> Formula | None:
+    """The expression, if it can stand here; None after its errors are noted."""
+    if not text.strip():
+        spot.error("is empty; give a number or an expression")
+        return None
+    try:
+        formula = parse(text)
+    except ModelError as error:
+        spot.error(error.problem)
+        return None
+    wrong = [_problem(name, scope, spot, names) for name in dict.fromkeys(formula.names())]
+    problems = [problem for problem in wrong if problem]
+    for problem in problems:
+        spot.error(problem)
+    return None if problems else formula
+
+
+def _problem(name: str, scope: Scope, spot: Spot, names: Names) -> str:
+    """Why a name cannot stand in an expression; empty if it can."""
+    inner = name[4:-1] if name.startswith("der(") else name
+    rate = inner != name
+    if rate and scope >= Scope.STATE:
+        if inner in names.coordinates or names.incomplete:
+            return ""
+        several = _several(inner, names)
+        hint = several or spot.report.hint(inner, sorted(names.coordinates))
+        return f'{name}: there is no coordinate "{inner}"{hint}'
+    if not rate and scope >= Scope.LAW and name in ("x", "v") and _declared(name, names):
+        return f'"{name}" is the element\'s own here, but something else has this name; rename that'
+    if not rate and name in names.known(scope):
+        return ""
+    if rate or name in ("t", "x", "v") or _declared(name, names):
+        return f"{name} cannot stand here: {ALLOWED[scope]}"
+    if names.incomplete and scope >= Scope.STATE:
+        return ""
+    hint = _several(name, names) or spot.report.hint(name, names.known(scope))
+    return f'there is no "{name}"{hint}'
+
+
+def _several(name: str, names: Names) -> str:
+    if name not in names.several:
+        return ""
+    return f'; joint "{name}" has the coordinates {", ".join(names.several[name])}'
+
+
+def _declared(name: str, names: Names) -> bool:
+    return name in names.parameters or name in names.inputs or name in names.coordinates
+
+
+def value_of(formula: Formula, names: Names, spot: Spot) -> float | None:
+    """The value for the parameters' own values; None where it is unknown or was refused.
+
+    An expression that cannot be calculated for the file's own numbers is a mistake: better said now.
+    """
+    needed = set(formula.names())
+    known = {name: names.parameters.get(name) for name in needed}
+    if any(value is None for value in known.values()):
+        return None
+    try:
+        value = float(formula.evaluate(Floats(), known))
+    except ModelError as error:
+        spot.error(error.problem)
+        return None
+    except (ArithmeticError, ValueError):
+        value = math.inf
+    except TypeError:  # the square root of a negative number, to a power
+        value = math.nan
+    if not math.isfinite(value):
+        spot.error("has no finite value for the parameters' values")
+        return None
+    return value
+
+
+def number_problem(value: Any) -> str:
+    """Why a plain number cannot be used; empty if it can."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return f"{value} is not a finite number"
+    if abs(value) > LARGEST:
+        return f"the number is too large; at most {LARGEST:g} can be calculated with"
+    return ""

@@ -1,0 +1,64 @@
+"""The way in: a model file or its text becomes a `Model`."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from pathlib import PurePath
+
+from linegraph.model import SNAP, Model
+from linegraph.modelfile.building import build
+from linegraph.modelfile.document import parse_document, read_bytes
+from linegraph.modelfile.names import name_problem
+from linegraph.modelfile.report import Report
+from linegraph.modelfile.tables import FLAT
+
+
+def read(path: str | os.PathLike[str], *, snap: float = SNAP) -> Model:
+    """Read a model file: TOML, or JSON where the name ends in ``.json``.
+
+    Args:
+        path: the file.
+        snap: entries of rotation matrices this close to 0, 1 or 1/2 become these exactly.
+
+    Raises:
+        SourceError: the file cannot be read, or is neither TOML nor JSON.
+        SourceErrors: what it says cannot be; all that is wrong, each with its line.
+    """
+    return parse(read_bytes(path), os.fsdecode(path), snap=snap)
+
+
+def parse(text: bytes, source: str, *, snap: float = SNAP) -> Model:
+    """Read the text of a model file.
+
+    Args:
+        text: TOML or JSON, in UTF-8.
+        source: what messages call it; its stem names a model without name.
+        snap: as for `read`.
+
+    Raises:
+        SourceError: as for `read`.
+        SourceErrors: as for `read`.
+
+    Example:
+        >>> model = parse(b'''
+        ... [body.bob]
+        ... mass = 2
+        ... mass_center = [0, 0, -0.5]
+        ... [revolute.hinge]
+        ... between = ["ground", "bob"]
+        ... axis = [0, 1, 0]
+        ... ''', "pendulum.toml")
+        >>> model.name, [joint.name for joint in model.joints]
+        ('pendulum', ['hinge'])
+    """
+    document = parse_document(text, source)
+    report = Report(source, document.lines, FLAT)
+    stem = PurePath(source).stem
+    model = build(document, stem if not name_problem(stem, dots=True) else "model", report, snap)
+    report.conclude()
+    model.source = report.source
+    told = f"Derived from a model file with SHA-256 {hashlib.sha256(text).hexdigest()}."
+    about = model.about.rstrip()
+    model.about = f"{about}{'' if about[-1] in '.!?' else '.'} {told}" if about else told
+    return model

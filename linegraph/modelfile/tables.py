@@ -1,0 +1,376 @@
+"""The tables of the language, as data: what may stand where.
+
+Joints and elements are not listed: their tables follow from the dataclasses in the registers, so that a
+new one is in the language at once. `Law` fields see x and v; all others see what `Scope` says.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import MISSING, dataclass, fields
+from typing import TYPE_CHECKING, Any
+
+from linegraph.elements import ELEMENTS, Element
+from linegraph.elements.load import BODY, WORLD
+from linegraph.joints import JOINTS, Joint
+from linegraph.joints.compound import PARTS
+from linegraph.modelfile.expressions import Scope
+from linegraph.modelfile.fields import Field, Named, Table
+from linegraph.modelfile.kinds import (
+    WRONG,
+    Direction,
+    Ends,
+    Flag,
+    Items,
+    JointName,
+    Kind,
+    Label,
+    Number,
+    Schema,
+    Terminal,
+    Text,
+    Word,
+    said,
+    vector,
+)
+from linegraph.modelfile.report import shown
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from linegraph.modelfile.expressions import Names
+    from linegraph.modelfile.report import Spot
+
+ENTRIES = ("xx", "xy", "xz", "yy", "yz", "zz")
+BY_INPUT = "input"
+MOST_COORDINATES = 7
+
+_ATTRIBUTE = re.compile(r"^ {4,8}(\w+(?:, \w+)*): (.*(?:\n {8,}\S.*)*)", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Inertia:
+    """Entries by name, three moments, or a 3 x 3 matrix."""
+
+    def read(self, value: Any, spot: Spot, names: Names) -> Any:
+        """Entries by name."""
+        if isinstance(value, dict):
+            return INERTIA.read(value, spot, names)
+        if not isinstance(value, list) or len(value) != 3:
+            spot.error(f"{_INERTIAS} is wanted, not {said(value)}")
+            return WRONG
+        if not any(isinstance(row, list) for row in value):
+            found = Items(Number(least=0), 3, "").read(value, spot, names)
+            return WRONG if found is WRONG else dict(zip(("xx", "yy", "zz"), found, strict=True))
+        return self._matrix(value, spot, names)
+
+    def _matrix(self, value: list[Any], spot: Spot, names: Names) -> Any:
+        rows = [
+            vector().read(row, spot.at(i) if isinstance(row, list) else spot, names)
+            for i, row in enumerate(value)
+        ]
+        if any(row is WRONG for row in rows):
+            return WRONG
+        if any(rows[i][j] != rows[j][i] for i in range(3) for j in range(i)):
+            spot.error("is not symmetric")
+            return WRONG
+        entries = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
+        return {key: rows[i][j] for key, (i, j) in zip(ENTRIES, entries, strict=True)}
+
+    def schema(self) -> Schema:
+        """One of three shapes."""
+        matrix = Items(vector(), 3, "").schema()
+        return {"anyOf": [INERTIA.schema(), vector().schema(), matrix]}
+
+
+_INERTIAS = "{ xx, yy, zz, xy, xz, yz }, a list [xx, yy, zz] or a 3 x 3 matrix"
+
+
+@dataclass(frozen=True)
+class Timed:
+    """An expression of t, or "input": the value and its first two derivatives come from inputs."""
+
+    def read(self, value: Any, spot: Spot, names: Names) -> Any:
+        """The expression, or the word."""
+        return value if value == BY_INPUT else Number(Scope.TIME).read(value, spot, names)
+
+    def schema(self) -> Schema:
+        """A number or a text."""
+        return Number(Scope.TIME).schema()
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A prescribed motion: one for each coordinate, or "input" for all.
+
+    Attributes:
+        count: of coordinates; None where one may stand alone, and the builder counts them.
+    """
+
+    count: int | None = None
+
+    def read(self, value: Any, spot: Spot, names: Names) -> Any:
+        """As the builder wants it."""
+        if value == BY_INPUT:
+            return value
+        if not isinstance(value, list) and self.count is None:
+            return Timed().read(value, spot, names)
+        count = self.count or (len(value) if 1 <= len(value) <= MOST_COORDINATES else 1)
+        return Items(Timed(), count, "one expression of t for each coordinate").read(
+            value, spot, names
+        )
+
+    def schema(self) -> Schema:
+        """A number, a text or a list."""
+        items = Items(Timed(), self.count or 1, "").schema()
+        if self.count is None:
+            items["maxItems"] = MOST_COORDINATES
+        return {"anyOf": [*Timed().schema()["anyOf"], items]}
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The parts of a compound joint: a list of tables with a type each."""
+
+    def read(self, value: Any, spot: Spot, names: Names) -> Any:
+        """As `Compound.parts` wants them."""
+        if not isinstance(value, list) or not value or len(value) > 6:
+            spot.error(f"a list of one to six {{ type, axis }} is wanted, not {said(value)}")
+            return WRONG
+        parts = tuple(self._part(part, spot.at(i), names) for i, part in enumerate(value))
+        return WRONG if any(part is WRONG for part in parts) else parts
+
+    def _part(self, value: Any, spot: Spot, names: Names) -> Any:
+        kind = value.get("type") if isinstance(value, dict) else None
+        if not isinstance(kind, str) or kind not in PARTS:
+            given = f'type "{shown(kind)}"' if isinstance(kind, str) else said(value)
+            known = ", ".join(PARTS)
+            spot.error(f"{{ type, axis }} is wanted, the type one of {known}; not {given}")
+            return WRONG
+        found = part_table(kind).read(value, spot, names)
+        if found is WRONG:
+            return WRONG
+        options = {key: inner for key, inner in found.items() if key not in ("type", "axis")}
+        return (kind, found["axis"], options)
+
+    def schema(self) -> Schema:
+        """An array of alternatives."""
+        items = {"anyOf": [part_table(kind).schema() for kind in PARTS]}
+        return {"type": "array", "items": items, "minItems": 1, "maxItems": 6}
+
+
+@dataclass(frozen=True)
+class Turning:
+    """The basement's rotation: by an axis and an angle, by three angles, or "input"."""
+
+    def read(self, value: Any, spot: Spot, names: Names) -> Any:
+        """The table, or the word."""
+        return value if value == BY_INPUT else TURNING.read(value, spot, names)
+
+    def schema(self) -> Schema:
+        """A table or the word."""
+        return {"anyOf": [{"const": BY_INPUT}, TURNING.schema()]}
+
+
+INERTIA = Table(
+    {
+        key: Field(Number(least=0 if key[0] == key[1] else None), f"entry {key} (kg m^2)")
+        for key in ("xx", "yy", "zz", "xy", "xz", "yz")
+    },
+    about="the tensor's own entries; those left out are 0",
+)
+
+_UNIT = Field(Text(), "its unit, for readers")
+_ABOUT = Field(Text(), "its meaning, for readers")
+
+PARAMETER = Table(
+    {
+        "value": Field(Number(), "a number, or an expression of earlier parameters", True),
+        "unit": _UNIT,
+        "about": _ABOUT,
+    }
+)
+INPUT = Table({"unit": _UNIT, "about": _ABOUT})
+
+FRAME = Table(
+    {
+        "at": Field(vector(), "origin in the body's frame (m)"),
+        "rpy": Field(vector(folded=True), "turns about the body's fixed x, y, z (rad)"),
+        "axis": Field(Direction(), "direction to turn about"),
+        "angle": Field(Number(folded=True), "angle of the turn about axis (rad)"),
+    },
+    exclusive=(("rpy", "axis"), ("rpy", "angle")),
+)
+TURNING = Table(
+    {
+        "axis": Field(Direction(), "direction to turn about"),
+        "angle": Field(Timed(), "angle of the turn about axis (rad)"),
+        "rpy": Field(Motion(3), "turns about fixed x, y, z (rad)"),
+    },
+    needs=(("axis", "rpy"), ("angle", "rpy")),
+    exclusive=(("rpy", "axis"), ("rpy", "angle")),
+)
+BASEMENT = Table(
+    {
+        "position": Field(Motion(3), 'three expressions of t (m), or "input"'),
+        "rotation": Field(Turning(), 'a turn as a function of t, or "input"'),
+    },
+    about='a massless body called "basement" in prescribed motion, for others to stand on',
+)
+GRAVITY = Table(
+    {"acceleration": Field(vector(), "of free fall, in ground axes (m/s^2)", True)},
+)
+BODY_TABLE = Table(
+    {
+        "mass": Field(Number(least=0), "kg; 0 if left out"),
+        "mass_center": Field(vector(), "in the body's frame (m); its origin if left out"),
+        "inertia": Field(Inertia(), "kg m^2, in body axes, about the mass centre; 0 if left out"),
+        "first_moment": Field(
+            vector(),
+            "mass times mass centre (kg m), instead of mass_center; the inertia is then about the origin",
+        ),
+        "frame": Field(Named(FRAME), "frames of this body by name"),
+    },
+    exclusive=(("mass_center", "first_moment"),),
+)
+FOLLOWS = Table(
+    {
+        "joint": Field(JointName(), "the joint it follows", True),
+        "ratio": Field(Number(folded=True), "its coordinate over that of the other; 1 if left out"),
+        "offset": Field(
+            Number(folded=True), "its coordinate where that of the other is 0 (rad or m)"
+        ),
+    }
+)
+LOAD = Table(
+    {
+        "at": Field(Terminal(), "where it acts: body or body.frame", True),
+        "force": Field(vector(Scope.STATE), "N"),
+        "torque": Field(vector(Scope.STATE), "N m"),
+        "axes": Field(Word((WORLD, BODY)), '"world" (default) or "body": axes of what is given'),
+    },
+    needs=(("force", "torque"),),
+)
+ROTOR = Table(
+    {
+        "joint": Field(JointName(), "the revolute joint it drives", True),
+        "inertia": Field(Number(least=0), "about the joint's axis (kg m^2)", True),
+        "ratio": Field(Number(), "turns of the rotor for one of the joint; 1 if left out"),
+    }
+)
+HEAD = {
+    "name": Field(Label(), "prefix of everything emitted; the file's own name if left out"),
+    "description": Field(Text(2000, lines=True), "one paragraph for the head of emitted files"),
+}
+
+
+def _abouts(kind: type) -> dict[str, str]:
+    """What a dataclass says about its attributes."""
+    found: dict[str, str] = {}
+    for base in reversed(kind.__mro__):
+        text = (base.__doc__ or "").partition("Attributes:")[2].partition("Example:")[0]
+        for names, about in _ATTRIBUTE.findall(text):
+            found |= {name: " ".join(about.split()) for name in names.split(", ")}
+    return found
+
+
+_KINDS: Mapping[str, Kind] = {
+    "Any": Number(),
+    "Vector": vector(),
+    "bool": Flag(),
+    "str": Text(),
+    "str | None": Text(),
+    "tuple[Vector, Vector]": Items(Direction(), 2, "a list of two directions"),
+    "tuple[Any, ...]": Parts(),
+}
+"""What a field of a dataclass holds, by its annotation."""
+
+
+def _own(kind: type, base: type) -> dict[str, Field]:
+    """The fields a type adds to those of its base."""
+    common = {f.name for f in fields(base)}
+    abouts = _abouts(kind)
+    return {
+        f.name: Field(_KINDS[str(f.type)], abouts.get(f.name, ""), f.default is MISSING)
+        for f in fields(kind)
+        if f.name not in common
+    }
+
+
+def _has_axis(kind: type[Joint]) -> bool:
+    """Whether it is about `axis`, and not about none or its own axes."""
+    own = {f.name for f in fields(kind)} - {f.name for f in fields(Joint)}
+    return kind.alignment is not Joint.alignment and not own & {"axes", "parts"}
+
+
+def freedoms_of(name: str) -> int | None:
+    """How many freedoms a joint type has; None where that depends on the joint."""
+    freedoms: Any = JOINTS[name].freedoms
+    return freedoms if isinstance(freedoms, int) else None
+
+
+_AXIS = Field(Direction(), "direction, in the joint's frames", True)
+
+
+def joint_table(name: str) -> Table:
+    """The table of a joint type."""
+    kind = JOINTS[name]
+    entries = {"between": Field(Ends(), "[tail, head]: body or body.frame", True)}
+    if _has_axis(kind):
+        entries["axis"] = _AXIS
+    entries |= _own(kind, Joint)
+    freedoms = freedoms_of(name)
+    if freedoms != 0:
+        entries |= {
+            "effort": Field(Flag(), "whether a force or torque along each velocity is an input"),
+            "motion": Field(Motion(), 'prescribed: expressions of t, or "input"'),
+        }
+    if freedoms in (1, None):
+        entries["follows"] = Field(FOLLOWS, "the joint it is coupled to")
+    about = (kind.__doc__ or "").strip().split("\n")[0]
+    return Table(entries, exclusive=(("motion", "follows"),), about=about)
+
+
+def part_table(name: str) -> Table:
+    """The table of one part of a compound joint."""
+    entries = {
+        "type": Field(Word((name,)), "", True),
+        "axis": _AXIS,
+        "name": Field(Label(), "its coordinate is JOINT_name; JOINT_1, JOINT_2, ... if left out"),
+    }
+    return Table(entries | _own(PARTS[name], Joint))
+
+
+def element_table(name: str) -> Table:
+    """The table of an element type."""
+    kind = ELEMENTS[name]
+    places = {
+        "between": Field(Ends(), "[tail, head]: along the line that joins them; or"),
+        "joint": Field(JointName(), "along the coordinate of this joint"),
+    }
+    own = {
+        key: Field(Number(Scope.LAW if key in kind.laws else Scope.STATE), entry.about)
+        for key, entry in _own(kind, Element).items()
+    }
+    about = (kind.__doc__ or "").strip().split("\n")[0]
+    groups = (("between", "joint"),)
+    return Table(places | own, (*groups, *kind.needs), groups, about)
+
+
+TYPES: Mapping[str, Table] = {
+    "body": BODY_TABLE,
+    "frame": FRAME,
+    **{name: joint_table(name) for name in JOINTS},
+    **{name: element_table(name) for name in ELEMENTS},
+    "load": LOAD,
+    "rotor": ROTOR,
+}
+"""The tables ``[type.name]``."""
+
+FLAT: Mapping[str, Table | None] = {
+    "parameters": None,
+    "inputs": None,
+    "gravity": GRAVITY,
+    "basement": BASEMENT,
+}
+"""The tables ``[table]``; None for those with names of the user's own."""
