@@ -1,8 +1,8 @@
-"""The command line: `linegraph emit`, `linegraph show`, `linegraph completion`.
+"""The command line: `linegraph new`, `emit`, `show`, `schema`, `completion`.
 
-The only module that prints. Results go to standard output, messages and progress to standard error. Exit
-status: 0 done, 2 the model or the call is wrong. Heavy modules are imported by the command that needs
-them.
+The only module that prints. Results go to standard output, messages and progress to standard error.
+Exit status: 0 done, 1 a check has failed, 2 the model or the call is wrong. Heavy modules are imported by
+the command that needs them.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from linegraph.errors import LinegraphError
+from linegraph.errors import LinegraphError, SourceErrors
 from linegraph.version import __version__
 
 if TYPE_CHECKING:
@@ -31,7 +31,9 @@ def _explained() -> Iterator[None]:
     try:
         yield
     except LinegraphError as error:
-        click.echo(f"{click.style('error:', fg='red', bold=True)} {error}", err=True)
+        messages = error.messages() if isinstance(error, SourceErrors) else [str(error)]
+        for message in messages:
+            click.echo(f"{click.style('error:', fg='red', bold=True)} {message}", err=True)
         sys.exit(WRONG)
 
 
@@ -57,7 +59,7 @@ def _about_model(command: Callable[..., None]) -> Callable[..., None]:
             "--parameters",
             type=click.Choice(["symbolic", "folded"]),
             help="Keep masses, moments and offsets as named parameters of the emitted functions, or fold "
-            "their values into the code. Default: folded for a URDF.",
+            "their values into the code.  [default: symbolic for a model file, folded for a URDF]",
         ),
         click.option(
             "--snap",
@@ -78,8 +80,8 @@ def _about_model(command: Callable[..., None]) -> Callable[..., None]:
 def main() -> None:
     """Equations of motion from linear (terminal) graphs, emitted as C and Python.
 
-    linegraph reads a robot or mechanism, unites its terminal graphs into the system graph, picks a tree,
-    derives
+    linegraph reads a mechanism (a model file) or a robot (a URDF), unites its terminal graphs into the
+    system graph, picks a tree, derives
 
         M(q) v' + h(q, v) = Q(u),    q' = N(q) v
 
@@ -87,12 +89,14 @@ def main() -> None:
 
     \b
     Examples:
+      linegraph new crane
+      linegraph emit crane.toml --out build
       linegraph emit panda.urdf --out build
       linegraph emit anymal.urdf --base floating --lang c --out build
       linegraph emit panda.urdf --lock panda_finger_joint1=0.02 --out build
       linegraph show panda.urdf
 
-    Exit status: 0 done; 2 the model or the call is wrong, nothing written.
+    Exit status: 0 done; 1 a check has failed; 2 the model or the call is wrong, nothing written.
     """
 
 
@@ -127,8 +131,10 @@ def emit(
 ) -> None:
     """Write the equations of motion of MODEL as source files.
 
-    MODEL is a URDF. Every moving joint that does not mimic another becomes a coordinate of its name, in
-    the order of a walk from the root, with its effort as an input; fixed joints are welded.
+    MODEL is a model file (.toml or .json; `linegraph new` writes one to start from) or a URDF. Of a model
+    file, the order of joints is the order of coordinates. Of a URDF, every moving joint that does not
+    mimic another becomes a coordinate of its name, in the order of a walk from the root, with its effort
+    as an input; fixed joints are welded.
 
     \b
     Written are NAME.h and NAME.c (C99, only <math.h>, no allocation) and NAME.py (only NumPy) with
@@ -176,6 +182,61 @@ def show(
 
 
 @main.command()
+@click.argument("name")
+@click.option(
+    "--out",
+    metavar="FILE",
+    type=click.Path(dir_okay=False, path_type=str),
+    help="The file to write; none may be there yet.  [default: NAME.toml]",
+)
+def new(name: str, out: str | None) -> None:
+    """Write a commented model file called NAME to start from.
+
+    It describes a pendulum on a cart and can be shown and emitted as it is.
+    """
+    with _explained():
+        from linegraph.modelfile.starter import write
+
+        click.echo(write(name, out))
+
+
+@main.command()
+def schema() -> None:
+    """Print the JSON Schema of model files, for editors that complete and check them.
+
+    \b
+    In the folder of your models:    linegraph schema > linegraph.schema.json
+    First line of a model:           #:schema ./linegraph.schema.json
+    """
+    from linegraph.modelfile.schema import text
+
+    click.echo(text(), nl=False)
+
+
+@main.command()
+@_about_model
+def check(
+    model: str, base: str, locks: tuple[str, ...], parameters: str | None, snap: float
+) -> None:
+    """Check MODEL and the equations that follow from it.
+
+    Reads and derives it, prints its coordinates, and at random states compares M and h of the program that
+    would be emitted with two other routes, and the rate of energy with the power of all that acts.
+    Exit status 1 if they differ by more than rounding.
+    """
+    with _explained():
+        from linegraph import checking
+        from linegraph.derive import derive
+
+        derivation = derive(_read(model, base, locks, parameters, snap))
+        findings = checking.check(derivation)
+        text = checking.report(derivation, findings, lambda title: click.style(title, bold=True))
+        click.echo(text, nl=False)
+        if not findings.good:
+            sys.exit(1)
+
+
+@main.command()
 @click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
 def completion(shell: str) -> None:
     """Print the completion script for SHELL.
@@ -196,16 +257,39 @@ def completion(shell: str) -> None:
 def _read(
     source: str, base: str, locks: tuple[str, ...], parameters: str | None, snap: float
 ) -> Model:
-    """Read a model file, lock joints, report what is odd."""
-    from linegraph.urdf import read
+    """Read a model file or a URDF, lock joints, report what is odd."""
+    if _is_urdf(source):
+        from linegraph import urdf
 
-    model = read(source, base=base, symbolic=parameters == "symbolic", snap=snap)
+        model = urdf.read(source, base=base, symbolic=parameters == "symbolic", snap=snap)
+    else:
+        from linegraph import modelfile
+
+        if base == "floating":
+            raise LinegraphError(
+                "--base floating is for a URDF; in a model file connect the base to ground with a free "
+                'joint: [free.root] between = ["ground", "BODY"]'
+            )
+        model = modelfile.read(source, snap=snap)
     for lock in locks:
         joint, value = _lock(lock)
         model.lock(joint, value)
     for warning in model.warnings:
         click.echo(f"{click.style('warning:', fg='yellow', bold=True)} {warning}", err=True)
     return model
+
+
+def _is_urdf(source: str) -> bool:
+    """By the name; where that does not tell, by what the file begins with."""
+    ending = source.lower().rpartition(".")[2]
+    if ending in ("toml", "json"):
+        return False
+    if ending in ("urdf", "xml", "xacro"):
+        return True
+    from linegraph.modelfile.document import read_bytes
+
+    start = read_bytes(source)[:1000].removeprefix(b"\xef\xbb\xbf").lstrip()
+    return start.startswith(b"<")
 
 
 def _lock(text: str) -> tuple[str, float]:

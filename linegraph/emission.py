@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 CONVENTIONS = (
     "Angles are in radians. Quaternions are (x, y, z, w) and must have length 1. A free joint has "
     "q = (position in the parent frame, quaternion) and v = (linear velocity, angular velocity), both in "
-    "the axes of the moving body; a planar joint has q = (x, y, angle) in the parent frame and "
-    "v = (vx, vy, wz) in the axes of the moving body. Each input acts along the velocity of its name.",
+    "the axes of the moving body; a spherical joint has a quaternion and the angular velocity in these "
+    "axes; a planar joint has q = (x, y, angle) in the parent frame and v = (vx, vy, wz) in the axes of the "
+    "moving body. All other v are derivatives of q. A joint's effort acts along the velocity of its name.",
 )
 
 

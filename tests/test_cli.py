@@ -192,3 +192,49 @@ def test_everything_locked_is_refused(tmp_path: Path) -> None:
     locks = [f"--lock=panda_joint{i}" for i in range(1, 8)] + ["--lock=panda_finger_joint1"]
     refused(linegraph("emit", PANDA, "--out", tmp_path, *locks), "no joint can move")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_new_check_and_emit_a_model_file(tmp_path: Path) -> None:
+    assert linegraph("new", "cart", "--out", "cart.toml", cwd=tmp_path).returncode == 0
+    checked = linegraph("check", "cart.toml", cwd=tmp_path)
+    assert checked.returncode == 0, checked.stderr
+    assert "2 degrees of freedom" in checked.stdout
+    assert checked.stdout.endswith("good\n")
+    emitted = linegraph("emit", "cart.toml", "--out", "out", cwd=tmp_path)
+    assert [Path(line).name for line in emitted.stdout.splitlines()] == [
+        "cart.h",
+        "cart.c",
+        "cart.py",
+    ]
+    header = (tmp_path / "out" / "cart.h").read_text()
+    assert "double m; /* kg: mass of the pendulum */" in header
+    folded = linegraph(
+        "emit", "cart.toml", "--out", "folded", "--parameters", "folded", cwd=tmp_path
+    )
+    assert folded.returncode == 0
+    assert "parameters" not in (tmp_path / "folded" / "cart.c").read_text()
+
+
+def test_new_does_not_overwrite(tmp_path: Path) -> None:
+    (tmp_path / "cart.toml").write_text("mine")
+    refused(linegraph("new", "cart", "--out", "cart.toml", cwd=tmp_path), "cart.toml")
+    assert (tmp_path / "cart.toml").read_text() == "mine"
+
+
+def test_all_mistakes_of_a_model_file_at_once(tmp_path: Path) -> None:
+    broken = tmp_path / "broken.toml"
+    broken.write_text(
+        'name = "broken"\n[body.rod]\nmas = 1.0\n\n[revolute.hinge]\nbetween = ["ground", "rot"]\n'
+        "axis = [0, 0, 1]\n"
+    )
+    done = linegraph("emit", broken, "--out", tmp_path / "out")
+    refused(done, "broken.toml:3:", "mass", "broken.toml:6:", '"rod"')
+    assert done.stderr.count("error:") == 2
+    assert not (tmp_path / "out").exists()
+
+
+def test_check_takes_a_robot() -> None:
+    done = linegraph("check", ANYMAL, "--base", "floating")
+    assert done.returncode == 0
+    assert "18 degrees of freedom, 12 inputs" in done.stdout
+    assert done.stdout.endswith("good\n")
