@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import runpy
 import subprocess
@@ -50,6 +51,33 @@ def test_the_python_example_prints_what_the_readme_says(tmp_path: Path) -> None:
         "cart_pole.py",
     }
     assert run(model + stages, tmp_path).startswith(expected)
+
+
+def test_the_first_model_of_a_new_user(tmp_path: Path) -> None:
+    """The commands of the README one after the other, fewer than ten."""
+    (script,) = blocks("bash")
+    commands = re.sub(r"<<'END'.*?^END$", "", script, flags=re.M | re.S)
+    assert len(commands.splitlines()) < 10
+    script = script.replace(".venv/bin/linegraph", f"{sys.executable} -m linegraph")
+    done = subprocess.run(
+        ["bash", "-euo", "pipefail", "-c", script],
+        cwd=tmp_path,
+        env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin"},
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    assert "good" in done.stdout
+    slide, swing = map(float, re.findall(r"= (-?[\d.]+)", done.stdout.splitlines()[-1]))
+    # by hand: (M + m) x'' + m l cos p p'' = F - k x, (J + m l^2) p'' + m l cos p x'' = -m g l sin p
+    m, length, cart, force, stiffness, x, p = 0.2, 0.3, 0.8, 2.0, 5.0, 0.1, 0.5
+    inertia = m * length**2 / 3 + m * length**2
+    cosine, sine = math.cos(p), math.sin(p)
+    a, b, c = cart + m, m * length * cosine, inertia
+    right = (force - stiffness * x, -m * 9.81 * length * sine)
+    determinant = a * c - b * b
+    assert slide == pytest.approx((right[0] * c - b * right[1]) / determinant, abs=1e-5)
+    assert swing == pytest.approx((a * right[1] - b * right[0]) / determinant, abs=1e-5)
 
 
 def test_the_c_example_compiles_and_runs(tmp_path: Path) -> None:

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.joints import JOINTS, Moments
 from linegraph.kinematics import carried
-from linegraph.model import BodyHandle, Model
+from linegraph.model import Model
 from linegraph.rotation import Rotation
 from linegraph.urdf.mimics import Followers, followers_of
 from linegraph.urdf.report import Report, named
 from linegraph.urdf.stems import MOMENTS, OFFSETS, stems
 from linegraph.vector import ZERO
+from linegraph.words import BodyHandle
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
