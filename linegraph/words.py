@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 
 from linegraph.body import Placement, orientation
@@ -68,17 +68,23 @@ Terminal = str | BodyHandle
 
 
 def adds(kind: Callable[Concatenate[str, tuple[str, str], Ask], Kind]) -> Any:
-    """A builder method that adds a joint of one kind: the line in the register of words."""
+    """A builder method that adds a joint of one kind: the line in the register of words.
+
+    As in a model file, `motion` prescribes the joint's motion; the joint itself calls it `drive`.
+    """
 
     def add(
         self: Model,
         name: str,
         between: tuple[Terminal, Terminal],
-        *args: Ask.args,
-        **kw: Ask.kwargs,
+        *args: Any,
+        motion: Any = None,
+        **options: Any,
     ) -> Kind:
         tail, head = between
-        return self.add_joint(kind(name, (str(tail), str(head)), *args, **kw))
+        make: Any = kind
+        joint: Kind = make(name, (str(tail), str(head)), *args, **options)
+        return self.add_joint(joint if motion is None else replace(joint, drive=motion))
 
     add.__doc__ = kind.__doc__
     add.__name__ = str(getattr(kind, "kind", add.__name__))
