@@ -66,12 +66,6 @@ class Body:
             ]
         return edges
 
-    def placement(self, vertex: str) -> Placement:
-        """Where a terminal of this body is."""
-        if vertex == self.name:
-            return Placement(ZERO, IDENTITY_MATRIX)
-        return self.frames[vertex[len(self.name) + 1 :]]
-
 
 def inertia_of(given: Any, who: str) -> Inertia:
     """An inertia tensor from what a user may write: (xx, yy, zz), a 3 x 3 matrix, or named entries.
