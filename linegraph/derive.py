@@ -61,14 +61,23 @@ class Derivation:
         self,
         parameters: Mapping[str, float] | None = None,
         t: float = 0.0,
-        u: Sequence[float] = (),
+        u: Sequence[float] | None = None,
     ) -> Numeric:
         """The numeric reference: the same derivation over floats, at a time and for inputs.
 
+        Args:
+            parameters: values in place of the model's own.
+            t: the time (s).
+            u: the inputs; all zero if left out.
+
         Raises:
-            ModelError: a parameter has no value.
+            ModelError: a parameter has no value, or there are more or fewer inputs.
         """
         chosen = parameters or {}
+        count = len(self.structure.inputs)
+        inputs = [0.0] * count if u is None else list(u)
+        if len(inputs) != count:
+            raise ModelError("u", f"{count} inputs are needed, got {len(inputs)}")
 
         def given(parameter: Parameter) -> float:
             value = chosen.get(parameter.name, parameter.value)
@@ -76,7 +85,7 @@ class Derivation:
                 raise ModelError(f'parameter "{parameter.name}"', "has no value")
             return float(value)
 
-        algebra = Floats(t=t, u=u)
+        algebra = Floats(t=t, u=inputs)
         values = valued(self.model.parameters.values(), algebra, given)
         return Numeric(self.tree(algebra, values), self.model, algebra, values)
 

@@ -830,6 +830,18 @@ def test_text_never_reaches_sympy(
     assert capsys.readouterr().out == ""
 
 
+def test_the_numeric_reference_takes_all_inputs_or_none() -> None:
+    model = Model("m")
+    model.prismatic("j", between=("ground", model.body("b", mass=2)), effort=False)
+    push = model.input("push", "N")
+    model.load("load", at="b", force=(0, 0, push))
+    derivation = derive(model)
+    assert derivation.numeric().bias([0.0], [0.0]) == [2 * 9.81]
+    assert derivation.numeric(u=[3.0]).bias([0.0], [0.0]) == [2 * 9.81]
+    with pytest.raises(ModelError, match="u: 1 inputs are needed, got 2"):
+        derivation.numeric(u=[1.0, 2.0])
+
+
 # ---- the errors themselves
 
 
