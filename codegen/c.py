@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from codegen import layout, prose, templates
+from codegen import layout, prose, routines, templates
 from codegen.printer import Notation, number, print_program
 from linegraph.functions import ARITY
+from linegraph.program import Routine
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
 
-    from linegraph.program import Argument, Call, Check, Module, Program, Quantity
+    from linegraph.program import Argument, Call, Check, Listing, Module, Program, Quantity
 
 _WIDTH = 100
 
@@ -24,7 +25,7 @@ def render(module: Module) -> dict[str, str]:
         "name": module.name,
         "macro": macro,
         "parameters": [(x.name, number(layout.default(x)), _remark(x)) for x in module.parameters],
-        "names": [_names(macro, *each) for each in layout.quantities(module)[:3]],
+        "names": [_names(macro, listing) for listing in layout.named(module)],
     }
     header = templates.fill(
         "c/header.h.jinja",
@@ -40,7 +41,15 @@ def render(module: Module) -> dict[str, str]:
         (_signature(module, x, statuses), _body(module, x, statuses)) for x in module.programs
     ]
     sign = any(_FUNCTIONS["sign"] in line for _, body in functions for line in body)
-    source = templates.fill("c/source.c.jinja", functions=functions, sign=sign, **common)
+    helpers = routines.helpers(module)
+    source = templates.fill(
+        "c/source.c.jinja", functions=functions,
+        sign=sign,
+        helpers=helpers,
+        w_at=routines.independent(module),
+        quaternions=routines.quaternions(module),
+        **common,
+    )
     return {f"{module.name}.h": header, f"{module.name}.c": source}
 
 
@@ -77,16 +86,16 @@ def _remark(quantity: Quantity) -> str:
     return f"{unit}: {about}" if unit and about else unit or about or "no unit"
 
 
-def _names(
-    macro: str, symbol: str, heading: str, quantities: Sequence[Quantity]
-) -> tuple[str, str, str, list[str]]:
+def _names(macro: str, listing: Listing) -> tuple[str, str, str, list[str]]:
     """An array of names: symbol, what it holds, size and entries."""
-    if not quantities:
+    symbol, heading = listing.symbol, listing.heading
+    if not listing.quantities:
         return symbol, f"{heading} (none: one empty string, as C has no empty arrays)", "1", ['""']
-    return symbol, heading, f"{macro}_N{symbol.upper()}", [f"{string(x.name)}," for x in quantities]
+    entries = [f"{string(x.name)}," for x in listing.quantities]
+    return symbol, heading, f"{macro}_{listing.count}", entries
 
 
-def _document(module: Module, program: Program, statuses: dict[int, str]) -> list[str]:
+def _document(module: Module, program: Program | Routine, statuses: dict[int, str]) -> list[str]:
     """The lines of the comment above a declaration."""
     lines = [*prose.paragraph(program.about), ""]
     for argument in program.arguments:
@@ -103,12 +112,12 @@ def _document(module: Module, program: Program, statuses: dict[int, str]) -> lis
     return _block(lines)
 
 
-def _signature(module: Module, program: Program, statuses: dict[str, dict[int, str]]) -> str:
+def _signature(module: Module, program: Program | Routine, statuses: dict[str, dict[int, str]]) -> str:
     prefix = f"{module.name.upper()}_"
     parts = [_argument(module, argument, prefix) for argument in program.arguments]
     for result in program.results:
-        size = " * ".join(layout.extent(module, result.name, n, prefix) for n in result.shape)
-        parts.append(f"double {result.name}[{size if result.entries else 1}]")
+        size = " * ".join(layout.shape(module, result, prefix))
+        parts.append(f"double {result.name}[{size if all(result.shape) else 1}]")
     returned = "int" if program.status or statuses[program.name] else "void"
     head = f"{returned} {module.name}_{program.name}("
     line = f"{head}{', '.join(parts)})"
@@ -124,8 +133,12 @@ def _argument(module: Module, argument: Argument, prefix: str) -> str:
     return f"double {argument.name}"
 
 
-def _body(module: Module, program: Program, statuses: dict[str, dict[int, str]]) -> list[str]:
+def _body(
+    module: Module, program: Program | Routine, statuses: dict[str, dict[int, str]]
+) -> list[str]:
     """The lines between the braces of a definition."""
+    if isinstance(program, Routine):
+        return routines.body(module, program, "c", f"{module.name}_")
     body = print_program(program, _NOTATION)
     lines = [
         f"    double {local.name}[{local.size or 1}];"

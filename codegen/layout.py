@@ -6,51 +6,53 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from codegen import prose
+from linegraph.program import Listing, Routine
 
 if TYPE_CHECKING:
     from linegraph.program import Module, Program, Quantity, Result
 
 _SIZES = {
-    "q": "NQ",
-    "qdot": "NQ",
-    "v": "NV",
-    "a": "NV",
-    "tau": "NV",
-    "h": "NV",
-    "M": "NV",
-    "u": "NU",
+    **dict.fromkeys(("q", "qdot", "q_on"), ("NQ",)),
+    **dict.fromkeys(("v", "a", "tau", "h", "f", "c", "v_on"), ("NV",)),
+    "M": ("NV", "NV"),
+    "u": ("NU",),
+    "phi": ("NP",),
+    "J": ("NC", "NV"),
+    "T": ("NV", "NI"),
+    "Mr": ("NI", "NI"),
+    **dict.fromkeys(("hr", "s", "w"), ("NI",)),
 }
-"""Which of the three counts a reader expects as an array's size; all others are plain numbers."""
+"""The counts a reader expects as an array's extents; all others are plain numbers."""
 
 
 def counts(module: Module) -> dict[str, int]:
-    """How many positions, velocities and inputs there are, by the names all languages give them."""
-    return {
-        "NQ": len(module.positions),
-        "NV": len(module.velocities),
-        "NU": len(module.inputs),
-    }
+    """How many positions, velocities, inputs and the like there are, by the names all languages give them."""
+    return {x.count: len(x.quantities) for x in named(module)} | dict(module.counts)
 
 
-def extent(module: Module, name: str, size: int, prefix: str = "") -> str:
+def extent(module: Module, name: str, size: int, prefix: str = "", axis: int = 0) -> str:
     """The size of the array `name` as a reader expects it: ``prefix + NV`` rather than ``7``."""
-    count = _SIZES.get(name, "")
+    expected = _SIZES.get(name, ())
+    listed = {result: x.count for x in module.listings for result in x.sizes}
+    count = expected[axis] if axis < len(expected) else listed.get(name, "")
     return f"{prefix}{count}" if counts(module).get(count) == size else str(size)
 
 
-def shape(module: Module, result: Result) -> list[str]:
+def shape(module: Module, result: Result, prefix: str = "") -> list[str]:
     """The extents of a result, each as `extent` says it."""
-    return [extent(module, result.name, size) for size in result.shape]
-
-
-def quantities(module: Module) -> list[tuple[str, str, tuple[Quantity, ...]]]:
-    """What the head of a file lists: symbol, heading, and the quantities themselves."""
     return [
-        ("q", "positions", module.positions),
-        ("v", "velocities", module.velocities),
-        ("u", "inputs", module.inputs),
-        ("p", "parameters", module.parameters),
+        extent(module, result.name, size, prefix, axis) for axis, size in enumerate(result.shape)
     ]
+
+
+def named(module: Module) -> tuple[Listing, ...]:
+    """What has a count and an array of names."""
+    return (
+        Listing("q", "NQ", "positions", module.positions),
+        Listing("v", "NV", "velocities", module.velocities),
+        Listing("u", "NU", "inputs", module.inputs),
+        *module.listings,
+    )
 
 
 def head(module: Module) -> list[str]:
@@ -58,11 +60,11 @@ def head(module: Module) -> list[str]:
     lines: list[str] = []
     for text in module.about:
         lines += [*prose.paragraph(text), ""]
-    for symbol, heading, listed in quantities(module):
-        if listed:
-            value = "value, " if symbol == "p" else ""
-            title = f"{symbol}, the {heading}: index, name, {value}unit, meaning"
-            lines += [title, *prose.table(listed), ""]
+    for listing in (*named(module), Listing("p", "", "parameters", module.parameters)):
+        if listing.quantities:
+            value = "value, " if listing.symbol == "p" else ""
+            title = f"{listing.symbol}, the {listing.heading}: index, name, {value}unit, meaning"
+            lines += [*prose.paragraph(title), *prose.table(listing.quantities), ""]
     return lines[:-1]
 
 
@@ -78,9 +80,12 @@ def statuses(module: Module) -> dict[str, dict[int, str]]:
     programs = {program.name: program for program in module.programs}
     found: dict[str, dict[int, str]] = {}
 
-    def visit(program: Program) -> dict[int, str]:
+    def visit(program: Program | Routine) -> dict[int, str]:
         if program.name not in found:
             own: dict[int, str] = {}
+            if isinstance(program, Routine):
+                found[program.name] = dict(program.statuses)
+                return found[program.name]
             inherited = (visit(programs[call.program]).items() for call in program.calls)
             reasons = [(check.status, check.about) for check in program.checks]
             for status, about in chain(*inherited, reasons):

@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from codegen import reserved
+from codegen import layout, reserved
 from linegraph.errors import NameRefused
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from linegraph.program import Module, Program
+    from linegraph.program import Module, Program, Routine
 
 LONGEST = 128
 """Identifiers are at most this long, so that they also do as file names."""
@@ -66,7 +66,7 @@ def validate(module: Module) -> None:
     _accept("model", module.name)
     if module.name.endswith("_"):
         raise _refused("model", module.name, "functions' names would have two underscores in a row")
-    macros = {f"{module.name.upper()}_{end}" for end in ("NQ", "NV", "NU", "H")}
+    macros = {f"{module.name.upper()}_{end}" for end in (*layout.counts(module), "H")}
     for parameter in module.parameters:
         _accept("parameter", parameter.name)
         if parameter.name in macros:
@@ -77,7 +77,7 @@ def validate(module: Module) -> None:
     _distinct("function", (program.name for program in module.programs))
     for program in module.programs:
         _validate_program(program)
-    for quantity in (*module.positions, *module.velocities, *module.inputs):
+    for quantity in (x for listing in layout.named(module) for x in listing.quantities):
         if len(quantity.name) > LONGEST_TEXT:
             size = f"it has {len(quantity.name)} characters, more than {LONGEST_TEXT}"
             raise NameRefused(
@@ -90,7 +90,7 @@ def quote(text: str) -> str:
     return ascii(text) if len(text) <= 60 else f"{text[:60]!a}..."
 
 
-def _validate_program(program: Program) -> None:
+def _validate_program(program: Program | Routine) -> None:
     arguments = [argument.name for argument in program.arguments]
     results = [result.name for result in program.results]
     locals_ = [result.name for call in program.calls for result in call.results]

@@ -7,11 +7,13 @@ faster than NumPy's scalars; those of many states are arrays. The assignments ar
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
-from codegen import layout, prose, templates
+from codegen import layout, prose, routines, templates
 from codegen.printer import Notation, number, print_program
 from linegraph.functions import ARITY
+from linegraph.program import Routine
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -24,17 +26,20 @@ _WIDTH = 96
 def render(module: Module) -> dict[str, str]:
     """The one file of a module."""
     statuses = layout.statuses(module)
-    bodies = {program.name: _body(program) for program in module.programs}
+    bodies = {program.name: _body(module, program) for program in module.programs}
+    closed = any(isinstance(program, Routine) for program in module.programs)
     text = templates.fill(
         "python/module.py.jinja",
         unary=_called(bodies, 1),
         binary=_called(bodies, 2),
         name=module.name,
+        helpers=closed,
+        quaternions=routines.quaternions(module),
         head=_indented(layout.head(module), 0),
         counts=list(layout.counts(module).items()),
         names=[
-            (symbol, [f"{literal(x.name)}," for x in listed])
-            for symbol, _, listed in layout.quantities(module)[:3]
+            (listing.symbol, [f"{literal(x.name)}," for x in listing.quantities])
+            for listing in layout.named(module)
         ],
         parameters=[x.name for x in module.parameters],
         defaults=[f"{x.name}={number(layout.default(x))}" for x in module.parameters],
@@ -46,6 +51,7 @@ def render(module: Module) -> dict[str, str]:
                 "document": _document(module, program, statuses[program.name]),
                 "wrapper": _wrapper(module, program),
                 "body": bodies[program.name],
+                "sizes": _sizes(program),
             }
             for program in module.programs
         ],
@@ -94,7 +100,7 @@ def _remark(quantity: Quantity) -> list[str]:
     return _indented(prose.paragraph(f"{quantity.name}{unit}: {quantity.about}", 4), 8)
 
 
-def _document(module: Module, program: Program, statuses: dict[int, str]) -> list[str]:
+def _document(module: Module, program: Program | Routine, statuses: dict[int, str]) -> list[str]:
     """The lines of a docstring, quotes excluded."""
     about = prose.paragraph(program.about) or [f"Compute {program.name}."]
     lines = [*about, "", "Args:"]
@@ -122,7 +128,7 @@ def _item(text: str) -> list[str]:
     return [f"    {line}" for line in prose.paragraph(text, 4)]
 
 
-def _wrapper(module: Module, program: Program) -> list[str]:
+def _wrapper(module: Module, program: Program | Routine) -> list[str]:
     """The lines of a public function, below its docstring."""
     lines, leads = [], []
     for argument in program.arguments:
@@ -156,8 +162,17 @@ def _join(module: Module, result: Result) -> str:
     return f"_join({result.name}, lead, ({', '.join(extents)}{',' * (len(extents) == 1)}))"
 
 
-def _body(program: Program) -> list[str]:
+def _sizes(program: Program | Routine) -> str:
+    """Of a routine, which takes one state at a time, how many components each result has; else nothing."""
+    if not isinstance(program, Routine):
+        return ""
+    return ", ".join(str(math.prod(result.shape)) for result in program.results) + ","
+
+
+def _body(module: Module, program: Program | Routine) -> list[str]:
     """The lines of a private function: arguments and results are lists of components."""
+    if isinstance(program, Routine):
+        return routines.body(module, program, "python", "_", literal)
     lines = []
     for call in program.calls:
         results = ", ".join(result.name for result in call.results)

@@ -1,19 +1,20 @@
-"""Words that stand for several components: the rotor behind a gear, and the basement."""
+"""Words that stand for several components: the rotor behind a gear, the basement, a locked joint."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
 from linegraph.body import GROUND
-from linegraph.checks import vector
+from linegraph.checks import nearest, vector
 from linegraph.errors import ModelError
-from linegraph.joints import Compound, Revolute
+from linegraph.joints import Compound, Fixed, Revolute
 from linegraph.joints.base import BY_INPUT
 from linegraph.vector import ZERO
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from linegraph.joints import Joint
     from linegraph.model import Model
     from linegraph.words import BodyHandle
 
@@ -78,3 +79,18 @@ def _product(inertia: Any, a: Any, b: Any) -> Any:
     if factor == 1:
         return inertia
     return f"({inertia})*({factor})" if isinstance(inertia, str) else inertia * factor
+
+
+def welded(model: Model, joint: Joint, value: float) -> Fixed:
+    """The fixed joint that a joint of one freedom is at a value: at its tail frame, moved."""
+    from linegraph.kinematics import moved
+
+    tail, head = joint.between
+    terminals = model.terminals()
+    if tail not in terminals:
+        who = f'joint "{joint.name}"'
+        raise ModelError(who, f'there is no body or frame "{tail}"; {nearest(tail, terminals)}')
+    body, placement = terminals[tail]
+    frame = f"{joint.name}.locked"
+    terminal = model.add_frame(body, frame, moved(placement, joint, value, model.snap))
+    return Fixed(joint.name, (terminal, head))

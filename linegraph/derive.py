@@ -1,7 +1,7 @@
 """From a model to equations: the pipeline, stage by stage.
 
-    Model ──graph()──→ SystemGraph ──mechanical_topology──→ Topology
-          ──kinematic_tree──→ KinematicTree ──orthogonality──→ M, h, ... over any algebra
+    Model ──graph()──→ SystemGraph ──formulate──→ Formulation
+          ──kinematic_tree──→ KinematicTree ──orthogonality, closure──→ M, h, J, ... over any algebra
           ──programs──→ Module ──codegen.render──→ files
 
 Each arrow is one pure function.
@@ -9,22 +9,29 @@ Each arrow is one pure function.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from copy import copy
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from linegraph import orthogonality
 from linegraph.algebra import Algebra, Floats
+from linegraph.assembly import Assembly, assemble
+from linegraph.choices import Choices
+from linegraph.closure import Chords
 from linegraph.errors import ModelError, SourceError
 from linegraph.expression import Dag
-from linegraph.kinematics import KinematicTree, kinematic_tree, mechanical_topology
+from linegraph.formulation import Formulation, formulate
+from linegraph.kinematics import KinematicTree, kinematic_tree
 from linegraph.loads import Applied, applied
 from linegraph.mass_matrix import mass_matrix
-from linegraph.parameters import Parameter, valued
+from linegraph.parameters import Parameter, resolver, valued
 from linegraph.regularity import require_regular
+from linegraph.scope import relations
+from linegraph.transfer import transfer
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from linegraph.graph import SystemGraph
     from linegraph.model import Model
@@ -39,16 +46,21 @@ class Derivation:
     Attributes:
         model: what was said.
         graph: the united terminal graph.
-        topology: the chosen tree of the translational projection; the rotational one has the same edges.
+        formulation: the chosen trees.
     """
 
     model: Model
     graph: SystemGraph
-    topology: Topology
+    formulation: Formulation
+
+    @property
+    def topology(self) -> Topology:
+        """The chosen tree of the translational projection; the rotational one mostly has the same edges."""
+        return self.formulation.translation
 
     def tree(self, algebra: Algebra, parameters: Mapping[str, Scalar]) -> KinematicTree:
         """The links over an algebra, parameters as given."""
-        return kinematic_tree(self.model, self.topology, algebra, parameters)
+        return kinematic_tree(self.model, self.formulation, algebra, parameters)
 
     @cached_property
     def structure(self) -> KinematicTree:
@@ -87,7 +99,37 @@ class Derivation:
 
         algebra = Floats(t=t, u=inputs)
         values = valued(self.model.parameters.values(), algebra, given)
-        return Numeric(self.tree(algebra, values), self.model, algebra, values)
+        return Numeric(self.tree(algebra, values), self.model, algebra, values, self)
+
+    def circuit_of(self, chord: str) -> list[str]:
+        """The joints and constraints of the circuit that a chord closes, the chord last."""
+        circuit = self.topology.circuit
+        names = {*(joint.name for joint in self.model.joints), *self.topology_names}
+        if chord not in circuit.rows:
+            return [chord]
+        row = circuit.entries[circuit.rows.index(chord)]
+        return [*(n for j in row if (n := circuit.columns[j]) in names), chord]
+
+    @cached_property
+    def assembled(self) -> Assembly:
+        """The assembly from the model's own start values, which are those of joints."""
+        start = None
+        if self.formulation.absolute or self.formulation.level:
+            tree = tuple(x for x in self.model.choices.tree if not x.endswith("/inertia"))
+            joints = derive(variant(self.model, tree=tree))
+            at_rest = [0.0] * len(joints.structure.velocities)
+            found = joints.assembly().q
+            start, _ = transfer(joints.numeric(), found, at_rest, self.numeric())
+        return assemble(self, start=start)
+
+    @property
+    def topology_names(self) -> tuple[str, ...]:
+        """Inertia edges that are branches by choice."""
+        return tuple(f"{body}/inertia" for body in self.formulation.absolute)
+
+    def assembly(self, hold: Mapping[str, float] | None = None, seed: int = 0) -> Assembly:
+        """A position that closes all loops, and what the constraints are worth there; see `assembly`."""
+        return assemble(self, hold, seed)
 
     @cached_property
     def symbolic(self) -> Any:
@@ -106,12 +148,30 @@ class Numeric:
         model: what elements act; None to leave them out.
         algebra: the time and the inputs.
         parameters: their values.
+        derivation: what it is of.
     """
 
     tree: KinematicTree
     model: Model | None = None
     algebra: Floats = field(default_factory=Floats)
     parameters: Mapping[str, Scalar] = field(default_factory=dict)
+    derivation: Derivation | None = None
+
+    @property
+    def t(self) -> float:
+        """The time."""
+        return float(self.algebra.arguments.get("t", 0.0))
+
+    def at(self, t: float) -> Numeric:
+        """The same at another time."""
+        if self.derivation is None:
+            return self
+        return self.derivation.numeric(self.parameters, t, self.algebra.arguments["u"])
+
+    @property
+    def resolve(self) -> Callable[[Any], Scalar]:
+        """From model values to numbers."""
+        return resolver(self.algebra, self.parameters)
 
     def mass_matrix(self, q: Sequence[float]) -> list[list[float]]:
         """M(q)."""
@@ -130,6 +190,34 @@ class Numeric:
         crossed = self._arms(q, v)
         acting = self.applied(q, v, driven=False)
         return orthogonality.inverse_dynamics(self.tree, self.algebra, crossed, a, acting)
+
+    def coordinate_rates(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
+        """N(q) v."""
+        return orthogonality.coordinate_rates(self.tree, self.algebra, q, v)
+
+    def constraints(self, q: Sequence[float]) -> list[float]:
+        """φ(q, t), one for each constraint with an equation of position."""
+        return self.chords(q, [0.0] * len(self.tree.velocities)).position()
+
+    def constraint_jacobian(self, q: Sequence[float]) -> list[list[float]]:
+        """J(q, t)."""
+        return self.chords(q, [0.0] * len(self.tree.velocities)).jacobian()
+
+    def constraint_rates(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
+        """J v - b, which is 0 where v is allowed."""
+        return self.chords(q, v).rates(v)
+
+    def constraint_bias(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
+        """γ of J v̇ = γ."""
+        return self.chords(q, v).bias()
+
+    def chords(self, q: Sequence[float], v: Sequence[float]) -> Chords:
+        """The constraints at a state."""
+        assert self.model is not None
+        state = (tuple(q), tuple(v))
+        rates = self.coordinate_rates(q, v) if self.tree.relations else []
+        found = relations(self.model, self.tree, self.algebra, self.parameters, state, rates)
+        return Chords(self.tree, self.algebra, self._arms(q, v), self.parameters, found)
 
     def energy(self, q: Sequence[float], v: Sequence[float]) -> tuple[float, float]:
         """Kinetic and potential energy, that of springs included."""
@@ -167,11 +255,21 @@ def derive(model: Model) -> Derivation:
     """
     try:
         graph = model.graph()
-        topology = mechanical_topology(model, graph)
-        require_regular(model, topology)
+        formulation = formulate(model, graph)
+        require_regular(model, formulation)
+        derivation = Derivation(model, graph, formulation)
+        if derivation.structure.closed and all(p.value is not None for p in model.parameters.values()):
+            _ = derivation.assembled
     except ModelError as error:
         raise _placed(error, model) from None
-    return Derivation(model, graph, topology)
+    return derivation
+
+
+def variant(model: Model, **choices: Any) -> Model:
+    """The same model with other choices of the formulation: what is not named is as by default."""
+    twin = copy(model)
+    twin.choices = replace(Choices(), **choices)
+    return twin
 
 
 def _placed(error: ModelError, model: Model) -> ModelError:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from linegraph.derive import derive
 from linegraph.errors import ModelError
 from linegraph.files import write_all
-from linegraph.programs import module_of
+from linegraph.programs import ON_REQUEST, module_of
 from linegraph.version import __version__
 
 if TYPE_CHECKING:
@@ -34,6 +34,7 @@ def emit(
     name: str | None = None,
     languages: Iterable[str] | None = None,
     folded: bool = False,
+    functions: Iterable[str] = (),
     progress: Callable[[str], None] | None = None,
 ) -> list[Path]:
     """Derive a model and write its functions as source files.
@@ -44,6 +45,7 @@ def emit(
         name: prefix of functions and files; default the model's name, cleaned to an identifier.
         languages: some of `codegen.LANGUAGES`; default all.
         folded: write the parameters' values into the code instead of keeping them symbolic.
+        functions: further functions to write, of `programs.ON_REQUEST`.
         progress: called with a short text before each stage.
 
     Returns:
@@ -61,9 +63,15 @@ def emit(
         >>> [path.name for path in emit(model, tempfile.mkdtemp())]
         ['pendulum.h', 'pendulum.c', 'pendulum.py']
     """
-    return write_all(
-        out, render(model, name=name, languages=languages, folded=folded, progress=progress)
+    files = render(
+        model,
+        name=name,
+        languages=languages,
+        folded=folded,
+        functions=functions,
+        progress=progress,
     )
+    return write_all(out, files)
 
 
 def render(
@@ -72,6 +80,7 @@ def render(
     name: str | None = None,
     languages: Iterable[str] | None = None,
     folded: bool = False,
+    functions: Iterable[str] = (),
     progress: Callable[[str], None] | None = None,
 ) -> dict[str, str]:
     """What `emit` writes, as {file name: text}."""
@@ -85,7 +94,7 @@ def render(
             raise ModelError(f'language "{language}"', f"is not known; known: {known}")
     prefix = codegen.naming.identifier(model.name) if name is None else name
     tell("deriving")
-    module = module_for(model, prefix, folded=folded)
+    module = module_for(model, prefix, folded=folded, functions=functions)
     files: dict[str, str] = {}
     for language in chosen:
         tell(f"writing {language}")
@@ -93,8 +102,15 @@ def render(
     return files
 
 
-def module_for(model: Model, name: str, *, folded: bool = False) -> Module:
+def module_for(
+    model: Model, name: str, *, folded: bool = False, functions: Iterable[str] = ()
+) -> Module:
     """The program of every function of a model: what operation counts are taken from."""
     about = [f"Equations of motion of {model.name}, derived by linegraph {__version__}."]
     about += [text for text in (model.about,) if text]
-    return module_of(derive(model), name, folded=folded, about=(*about, *CONVENTIONS))
+    wanted = tuple(functions)
+    for function in wanted:
+        if function not in ON_REQUEST:
+            raise ModelError(f'function "{function}"', f"is not one of {', '.join(ON_REQUEST)}")
+    about = [*about, *CONVENTIONS]
+    return module_of(derive(model), name, folded=folded, about=about, wanted=wanted)

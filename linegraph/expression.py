@@ -52,31 +52,34 @@ class Node:
         return self.dag.negate(self)
 
     def __add__(self, other: Operand) -> Operand:
-        return self.dag.add(self, other)
+        return self.dag.add(self, other) if isinstance(other, _OPERANDS) else NotImplemented
 
     def __radd__(self, other: Number) -> Operand:
         return self.dag.add(self, other)
 
     def __sub__(self, other: Operand) -> Operand:
-        return self.dag.subtract(self, other)
+        return self.dag.subtract(self, other) if isinstance(other, _OPERANDS) else NotImplemented
 
     def __rsub__(self, other: Number) -> Operand:
         return self.dag.subtract(other, self)
 
     def __mul__(self, other: Operand) -> Operand:
-        return self.dag.multiply(self, other)
+        return self.dag.multiply(self, other) if isinstance(other, _OPERANDS) else NotImplemented
 
     def __rmul__(self, other: Number) -> Operand:
         return self.dag.multiply(self, other)
 
     def __truediv__(self, other: Operand) -> Operand:
-        return self.dag.divide(self, other)
+        return self.dag.divide(self, other) if isinstance(other, _OPERANDS) else NotImplemented
 
     def __rtruediv__(self, other: Number) -> Operand:
         return self.dag.divide(other, self)
 
 
 Operand: TypeAlias = "Node | Number"
+
+_OPERANDS = (Node, int, float, Fraction)
+"""What a node calculates with; anything else, such as a `jets.Jet`, calculates with it."""
 
 
 class Dag:

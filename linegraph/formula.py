@@ -4,6 +4,7 @@ A `Formula` is the parsed text. It is evaluated over any algebra by looking its 
 the same text gives numbers, DAG nodes or sympy. What may stand in it:
 
     numbers   names   + - * / **   ( )   sin(x) ... max(x, y)   der(x)
+    position(body.frame).x ... torque(joint).z   across(element)   through(element)
 
 Limits hold before any number is built: a text that would explode is refused, not tried.
 """
@@ -41,6 +42,13 @@ LARGEST_NUMBER = 4096
 CONSTANTS = {"pi": math.pi}
 RATE = "der"
 
+VECTORS = (
+    *("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration"),
+    *("force", "torque"),
+)
+VARIABLES = (*VECTORS, "across", "through")
+"""Variables of edges and points: in outputs they may be named."""
+
 _SIGNS = {ast.UAdd: "+", ast.USub: "-"}
 _OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
 
@@ -50,8 +58,9 @@ class Formula:
     """A parsed expression: `op` applied to `parts`.
 
     Attributes:
-        op: ``number``, ``name``, ``der``, ``+ - * / **``, or the name of a function.
-        parts: operands; the value of a number, the text of a name.
+        op: ``number``, ``name``, ``der``, ``variable``, ``+ - * / **``, or the name of a function.
+        parts: operands; the value of a number, the text of a name; of a variable what, of which, and the
+            component.
     """
 
     op: str
@@ -63,6 +72,9 @@ class Formula:
             yield str(self.parts[0])
         elif self.op == RATE:
             yield f"der({self.parts[0]})"
+        elif self.op == "variable":
+            what, which, component = self.parts
+            yield f"{what}({which}){'.' if component else ''}{component}"
         else:
             for part in self.parts:
                 if isinstance(part, Formula):
@@ -80,7 +92,7 @@ class Formula:
         """
         if self.op == "number":
             return self.parts[0]
-        if self.op in ("name", RATE):
+        if self.op in ("name", RATE, "variable"):
             name = next(self.names())
             if name not in values:
                 raise ModelError("", f"{name} is not known here; {_known(values)}")
@@ -114,6 +126,20 @@ def parse(text: str) -> Formula:
     return _Reader(text).read(tree, 0)
 
 
+def variable_of(name: str) -> tuple[str, str, str] | None:
+    """What, of which and the component of a variable as `Formula.names` writes it; None of other names.
+
+    Example:
+        >>> variable_of("position(arm.tip).x"), variable_of("der(x)")
+        (('position', 'arm.tip', 'x'), None)
+    """
+    what, bracket, rest = name.partition("(")
+    if not bracket or what not in VARIABLES:
+        return None
+    which, _, component = rest.partition(")")
+    return what, which, component.removeprefix(".")
+
+
 class _Reader:
     """Turns the parsed text into a `Formula`, refusing all that is not on the list."""
 
@@ -141,7 +167,28 @@ class _Reader:
             return self._operation(node, depth)
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
             return self._call(node, node.func.id, depth)
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Call):
+            return self._component(node, node.value)
         raise self._error(node, _hint(node))
+
+    def _component(self, node: ast.Attribute, call: ast.Call) -> Formula:
+        """One component of a vector: ``position(arm.tip).x``."""
+        what = call.func.id if isinstance(call.func, ast.Name) else ""
+        if what not in VECTORS:
+            raise self._error(node, _hint(node))
+        if node.attr not in ("x", "y", "z"):
+            raise self._error(node, f"a vector has the components x, y and z, not {node.attr}")
+        return Formula("variable", (what, self._thing(call, what), node.attr))
+
+    def _thing(self, call: ast.Call, what: str) -> str:
+        """What a variable is of: a name, or ``body.frame``."""
+        if len(call.args) == 1 and not call.keywords:
+            (node,) = call.args
+            if isinstance(node, ast.Name):
+                return node.id
+            if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+                return f"{node.value.id}.{node.attr}"
+        raise self._error(call, f"{what} takes one name, as in {what}(arm.tip)")
 
     def _operation(self, node: ast.BinOp, depth: int) -> Formula:
         left, right = self.read(node.left, depth + 1), self.read(node.right, depth + 1)
@@ -183,6 +230,10 @@ class _Reader:
             if len(node.args) != 1 or not isinstance(node.args[0], ast.Name):
                 raise self._error(node, "der takes one name, as in der(hinge)")
             return Formula(RATE, (node.args[0].id,))
+        if name in VARIABLES and name not in VECTORS:
+            return Formula("variable", (name, self._thing(node, name), ""))
+        if name in VECTORS:
+            raise self._error(node, f"{name} is a vector: add .x, .y or .z")
         if name not in ARITY:
             raise self._error(node, f"{name}(...) is not a function; known: {', '.join(ARITY)}")
         if len(node.args) != ARITY[name]:

@@ -98,12 +98,23 @@ class Jets:
         Raises:
             ModelError: the function has no second derivative everywhere.
         """
+        if name == "atan2":
+            return self._angle(lifted(x[0]), lifted(x[1]))
         if name not in _DERIVATIVES:
             raise ModelError("", f"{name}(...) cannot prescribe a motion: it is not smooth")
         a = lifted(x[0])
         y = self._base.function(name, a.x)
         first, second = _DERIVATIVES[name](self._base, a.x, y)
         return Jet(y, first * a.dx, second * (a.dx * a.dx) + first * a.ddx)
+
+
+    def _angle(self, y: Jet, x: Jet) -> Jet:
+        """The angle of the point (x, y): its rate is the moment of the velocity over the distance squared."""
+        squared = x.x * x.x + y.x * y.x
+        rate = (x.x * y.dx - y.x * x.dx) / squared
+        moment = x.x * y.ddx - y.x * x.ddx
+        second = (moment - 2 * (rate * (x.x * x.dx + y.x * y.dx))) / squared
+        return Jet(self._base.function("atan2", y.x, x.x), rate, second)
 
 
 def _tan(_: Algebra, x: Scalar, y: Scalar) -> tuple[Scalar, Scalar]:

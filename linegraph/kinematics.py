@@ -8,29 +8,33 @@ rotated and shifted mass distributions.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph import vector
 from linegraph.algebra import Algebra, Constants
 from linegraph.body import GROUND, Body, Placement
-from linegraph.domains import TRANSLATION
 from linegraph.errors import ModelError
 from linegraph.joints import Joint, Moments
-from linegraph.layout import Freedom, Layout, Place, layout_of
+from linegraph.joints.base import TORQUES, Restriction, point_apart
+from linegraph.layout import Freedom, Layout, Place, floating, layout_of, turning
 from linegraph.parameters import resolver
 from linegraph.rotation import IDENTITY_MATRIX, Rotation, product, rotation_of, snapped
-from linegraph.topology import Step, Topology, choose_forest
-from linegraph.vector import ZERO, Scalar, Vector
+from linegraph.vector import ZERO, Matrix, Scalar, Vector
 
 if TYPE_CHECKING:
-    from linegraph.graph import SystemGraph
+    from linegraph.constraints import Constraint
+    from linegraph.constraints.relation import Relation
+    from linegraph.formulation import Formulation
+    from linegraph.jets import Jet
     from linegraph.model import Model
     from linegraph.program import Quantity
+    from linegraph.topology import Step
 
 Resolve = Callable[[Any], Scalar]
 _NO_MOMENTS = Moments(0, ZERO, (0, 0, 0, 0, 0, 0))
+_ALIGNED = Placement(ZERO, IDENTITY_MATRIX)
 
 
 @dataclass(frozen=True)
@@ -62,10 +66,41 @@ class Link:
         return self.place.velocities
 
     @property
+    def in_space(self) -> bool:
+        """Whether its joint's rotation is that to ground axes: an orientation in space of its own."""
+        return self.place.in_space
+
+    @property
     def numeric(self) -> bool:
         """Whether the mass distribution is made of numbers."""
         scalars = (self.moments.mass, *self.moments.first, *self.moments.inertia)
         return all(isinstance(x, (int, float)) for x in scalars)
+
+
+class Seat(NamedTuple):
+    """A constant place on a link, -1 for ground: its origin and its axes in the link's working frame."""
+
+    link: int
+    at: Vector
+    rotation: Matrix
+
+
+@dataclass(frozen=True)
+class Closure:
+    """A chord of the tree: a joint that closes a loop, or a constraint.
+
+    Attributes:
+        component: what it is; a joint as resolved in the algebra.
+        tail, head: where its ends are, in aligned axes.
+        drive: what it prescribes.
+        restrictions: a joint's reaction directions; of a joint that is a chord in rotation only those there.
+    """
+
+    component: Joint | Constraint
+    tail: Seat
+    head: Seat
+    drive: tuple[Jet | None, ...] = ()
+    restrictions: tuple[Restriction, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -75,12 +110,24 @@ class KinematicTree:
     Attributes:
         layout: coordinates and inputs, and which joint reads which.
         bodies: where each body's frame is: its link, -1 for ground, and its placement there.
+        closures: what the tree leaves out.
+        relations: constraints without edges, linear in velocities.
+        ends: of every joint and constraint, branch or chord, where it is.
     """
 
     links: tuple[Link, ...]
     gravity: Vector
     layout: Layout
     bodies: Mapping[str, tuple[int, Placement]]
+    closures: tuple[Closure, ...] = ()
+    relations: tuple[Relation, ...] = ()
+    ends: Mapping[str, Closure] = field(default_factory=dict)
+
+    @property
+    def closed(self) -> bool:
+        """Whether there are constraints."""
+        held = (c.restrictions or c.drive or not isinstance(c.component, Joint) for c in self.closures)
+        return bool(self.relations) or any(held)
 
     @property
     def positions(self) -> tuple[Quantity, ...]:
@@ -102,6 +149,11 @@ class KinematicTree:
         """Whether two joints share a coordinate."""
         places = [freedom.index for link in self.links for freedom in link.velocities]
         return len(places) > len(set(places))
+
+    @property
+    def levelled(self) -> bool:
+        """Whether some link's orientation is measured from ground and not from its parent."""
+        return any(link.place.level for link in self.links)
 
     @property
     def outward(self) -> list[int]:
@@ -133,7 +185,9 @@ class KinematicTree:
             fixed = all(isinstance(x, (int, float)) for x in link.at)
             if not (fixed and link.numeric and (parent is None or parent.numeric)):
                 continue
-            kept, handed = link.joint.regroup(link.moments)
+            # of a link that does not turn with its parent only the mass can be handed over
+            split = point_apart if link.place.level else link.joint.regroup
+            kept, handed = split(link.moments)
             links[i] = replace(link, moments=kept)
             if parent is not None:
                 shifted = carried(handed, link.rotation, link.at)
@@ -184,6 +238,15 @@ def body_moments(body: Body, resolve: Resolve) -> Moments:
     return carried(central, Rotation(), _resolved(body.center or ZERO, resolve))
 
 
+def mass_center(body: Body, resolve: Resolve) -> Vector:
+    """A body's mass centre in its own frame."""
+    if body.first is None:
+        return _resolved(body.center or ZERO, resolve)
+    mass = resolve(body.mass)
+    first = _resolved(body.first, resolve)
+    return ZERO if mass == 0 else (first[0] / mass, first[1] / mass, first[2] / mass)
+
+
 def compose(outer: Placement, inner: Placement, snap: float) -> Placement:
     """A frame given in an inner frame, seen from the outer one."""
     at = vector.add(outer.at, _swept(rotation_of(outer.rotation).out(inner.at), inner.at))
@@ -205,62 +268,64 @@ def moved(near: Placement, joint: Joint, value: Any, snap: float) -> Placement:
     return compose(there, inverse(alignment), snap)
 
 
-def mechanical_topology(model: Model, graph: SystemGraph) -> Topology:
-    """The tree of joint coordinates: arms and joints are branches, inertia edges chords.
-
-    Raises:
-        ModelError: a joint closes a loop, or a body hangs on nothing.
-    """
-    if not model.bodies:
-        raise ModelError(f'model "{model.name}"', "has no bodies: there is nothing to derive")
-    weights = {joint.name: float(joint.freedoms) for joint in model.joints}
-    weights |= {f"{name}/inertia": 7.0 for name in model.bodies}
-    weights |= {element.name: math.inf for element in model.elements}
-    projection = graph[TRANSLATION.name]
-    topology = choose_forest(projection, weights, roots=(GROUND,))
-    joints = {joint.name for joint in model.joints}
-    for edge in topology.chords:
-        if edge.name in joints:
-            raise ModelError(f'joint "{edge.name}"', "closes a loop; only trees can be derived")
-    for edge in topology.branches:
-        if edge.name.endswith("/inertia") and edge.name not in joints:
-            problem = "nothing connects it to ground; add a joint, a free one if it floats"
-            raise ModelError(f'body "{edge.component}"', problem)
-    return topology
-
-
 def kinematic_tree(
-    model: Model, topology: Topology, algebra: Algebra, parameters: Mapping[str, Scalar]
+    model: Model, formulation: Formulation, algebra: Algebra, parameters: Mapping[str, Scalar]
 ) -> KinematicTree:
     """Walk the tree from ground outward and fold all that is constant into links.
 
     Raises:
         ModelError: a coupling is impossible.
     """
-    layout = layout_of(model, algebra, parameters)
-    return _Walk(model, layout, resolver(algebra, parameters)).along(topology.walk)
+    layout = layout_of(model, formulation, algebra, parameters)
+    return _Walk(model, formulation, layout, algebra, parameters).along()
 
 
 class _Walk:
     """Collects links on a walk from ground outward."""
 
-    def __init__(self, model: Model, layout: Layout, resolve: Resolve) -> None:
+    def __init__(
+        self,
+        model: Model,
+        formulation: Formulation,
+        layout: Layout,
+        algebra: Algebra,
+        parameters: Mapping[str, Scalar],
+    ) -> None:
         self._model = model
+        self._formulation = formulation
         self._layout = layout
-        self._resolve = resolve
+        self._algebra = algebra
+        self._resolve = resolver(algebra, parameters)
         self._joints = {joint.name: joint for joint in model.joints}
         self._terminals = model.terminals()
         self._links: list[Link] = []
         self._where = {GROUND: (-1, Placement(ZERO, IDENTITY_MATRIX))}
 
-    def along(self, walk: tuple[Step, ...]) -> KinematicTree:
+    def along(self) -> KinematicTree:
         """Take every joint branch in turn; arms lie within a body and are constant."""
-        for step in walk:
+        for step in self._formulation.translation.walk:
             joint = self._joints.get(step.edge.name)
             if joint is not None and step.edge.component == joint.name:
                 self._cross(joint, step)
+            elif step.edge.component in self._formulation.absolute and step.near == GROUND:
+                self._float(step.edge.component)
         gravity = _resolved(self._model.gravity, self._resolve)
-        return KinematicTree(tuple(self._links), gravity, self._layout, self._where)
+        ends = {end.component.name: end for end in self._ends()}
+        return KinematicTree(
+            tuple(self._links),
+            gravity,
+            self._layout,
+            self._where,
+            tuple(end for end in ends.values() if self._left_out(end.component.name)),
+            self._model.relations,
+            ends,
+        )
+
+    def _left_out(self, name: str) -> bool:
+        """Whether the tree does not say how the ends of a joint or constraint move against each other."""
+        angle = self._formulation.level.get(name)
+        in_space = angle is not None and angle.less is None
+        return in_space or name not in self._formulation.joints
 
     def _cross(self, joint: Joint, step: Step) -> None:
         joint = joint.resolved(self._resolve)
@@ -272,13 +337,51 @@ class _Walk:
         if joint.freedoms == 0:
             self._enter(body, parent, self._compose(near, inverse(far)))
             return
-        alignment = self._alignment(joint)
-        near = self._compose(near, alignment)
         place = self._layout.places[joint.name]
+        forward = step.forward
+        if place.in_space:
+            # an orientation in space, measured from ground: the link has the body's own axes
+            joint, forward = turning(joint.name, body), True
+            far = Placement(far.at, IDENTITY_MATRIX)
+        else:
+            alignment = self._alignment(joint)
+            near, far = self._compose(near, alignment), self._compose(far, alignment)
         rotation = rotation_of(near.rotation)
-        link = Link("", parent, joint, step.forward, rotation, near.at, place, _NO_MOMENTS)
-        self._links.append(link)
-        self._enter(body, len(self._links) - 1, inverse(self._compose(far, alignment)))
+        self._links.append(
+            Link("", parent, joint, forward, rotation, near.at, place, _NO_MOMENTS)
+        )
+        self._enter(body, len(self._links) - 1, inverse(far))
+
+    def _float(self, body: str) -> None:
+        """A body on its inertia edge: a link of its own, its origin at the mass centre."""
+        place = self._layout.places[body]
+        joint = floating(body)
+        self._links.append(Link("", -1, joint, True, Rotation(), ZERO, place, _NO_MOMENTS))
+        center = Placement(mass_center(self._model.bodies[body], self._resolve), IDENTITY_MATRIX)
+        self._enter(body, len(self._links) - 1, inverse(center))
+
+    def _ends(self) -> Iterator[Closure]:
+        """Every joint and constraint as the chord that it is or would be."""
+        drives = self._layout.drives
+        for joint in self._model.joints:
+            joint = joint.resolved(self._resolve)
+            tail, head = (self._seat(end, self._alignment(joint)) for end in joint.between)
+            held: tuple[Restriction, ...] = ()
+            if self._left_out(joint.name):
+                level = joint.name in self._formulation.level
+                found = joint.restricted(self._algebra)
+                held = tuple(r for r in found if isinstance(r, TORQUES) or not level)
+            yield Closure(joint, tail, head, drives.get(joint.name, ()), held)
+        for constraint in self._model.constraints:
+            tail, head = (self._seat(end, _ALIGNED) for end in constraint.ends)
+            yield Closure(constraint, tail, head, drives[constraint.name])
+
+    def _seat(self, terminal: str, alignment: Placement) -> Seat:
+        """Where a terminal's aligned axes are in its link."""
+        body, placement = self._terminals[terminal]
+        link, pose = self._where[body]
+        whole = self._compose(self._compose(pose, self._constant(placement)), alignment)
+        return Seat(link, whole.at, whole.rotation)
 
     def _enter(self, body: str, index: int, pose: Placement) -> None:
         """Note where a body is and add its mass distribution to its link."""

@@ -1,17 +1,20 @@
 """The layout of a model's state and inputs: where every joint finds its coordinates.
 
-Positions and velocities stand in declared order of the joints. Inputs are the joints' efforts in that
+Positions and velocities stand in declared order: first those of the joints that are branches, then those
+of bodies whose inertia edge is one. Inputs are the efforts of all joints, branches or not, in their
 order, then the named inputs, then motions prescribed by input, each with its first two derivatives.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from linegraph.algebra import Floats
+from linegraph.body import GROUND, MASS_CENTER
 from linegraph.errors import ModelError
 from linegraph.jets import Jet, Jets, lifted
+from linegraph.joints import Free, Spherical
 from linegraph.joints.base import BY_INPUT
 from linegraph.parameters import Input, resolver
 from linegraph.program import Quantity
@@ -20,8 +23,11 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from linegraph.algebra import Algebra
+    from linegraph.constraints import Constraint
+    from linegraph.formulation import Formulation
     from linegraph.joints import Joint
     from linegraph.model import Coupling, Model
+    from linegraph.planarity import Angle
     from linegraph.vector import Scalar
 
 EFFORT_UNITS = {"rad/s": "N*m", "m/s": "N"}
@@ -43,26 +49,52 @@ class Place:
     Attributes:
         positions, velocities: entries of the state; none where the motion is prescribed.
         drive: the prescribed coordinates with their first two derivatives; none where they are free.
+        less: of an angle measured from ground, the entries of positions and of velocities that make up
+            the angle of the near body, to be subtracted; ratios have the sign of an addition.
+        level: whether the velocities are measured from ground.
     """
 
     positions: tuple[Freedom, ...] = ()
     velocities: tuple[Freedom, ...] = ()
     drive: tuple[Jet, ...] = ()
+    less: tuple[tuple[Freedom, ...], tuple[Freedom, ...]] = ((), ())
+    level: bool = False
+
+    @property
+    def in_space(self) -> bool:
+        """Whether the coordinates are an orientation in space and not the joint's own."""
+        return self.level and len(self.positions) > 1
 
 
 @dataclass
 class Layout:
-    """All coordinates and inputs of a model, and who reads them."""
+    """All coordinates and inputs of a model, and who reads them.
+
+    Attributes:
+        efforts: (velocity, input) of each effort that acts along a velocity alone.
+        pushes: the first input of each joint whose effort does not: chords, and joints measured from ground.
+        places: by joint, and by body for those on their inertia edge.
+        drives: prescribed motions by joint or constraint, also of chords.
+    """
 
     positions: list[Quantity] = field(default_factory=list)
     velocities: list[Quantity] = field(default_factory=list)
     inputs: list[Quantity] = field(default_factory=list)
     efforts: list[tuple[int, int]] = field(default_factory=list)
+    pushes: dict[str, int] = field(default_factory=dict)
     places: dict[str, Place] = field(default_factory=dict)
+    drives: dict[str, tuple[Jet | None, ...]] = field(default_factory=dict)
     named_inputs: dict[str, Scalar] = field(default_factory=dict)
 
+    def own(self, joint: str) -> Place | None:
+        """Where a joint finds its own coordinates; None where the state has none of them."""
+        place = self.places.get(joint)
+        return None if place is None or place.in_space else place
 
-def layout_of(model: Model, algebra: Algebra, parameters: Mapping[str, Scalar]) -> Layout:
+
+def layout_of(
+    model: Model, formulation: Formulation, algebra: Algebra, parameters: Mapping[str, Scalar]
+) -> Layout:
     """Number the coordinates and inputs of a model.
 
     Raises:
@@ -72,7 +104,9 @@ def layout_of(model: Model, algebra: Algebra, parameters: Mapping[str, Scalar]) 
     followers = {coupling.joint: coupling for coupling in model.couplings}
     for joint in model.joints:
         if joint.drive is None and joint.name not in followers:
-            _add_coordinates(layout, joint)
+            _add_effort(layout, joint, _add_coordinates(layout, joint, formulation))
+    for body in formulation.absolute:
+        layout.places[body] = _placed(layout, floating(body))
     for declared in model.inputs:
         layout.named_inputs[declared.name] = _input(layout, algebra, _quantity(declared))
     for quantities in (layout.positions, layout.velocities):
@@ -80,10 +114,26 @@ def layout_of(model: Model, algebra: Algebra, parameters: Mapping[str, Scalar]) 
     values = _time(model, algebra, parameters)
     for joint in model.joints:
         if joint.drive is not None:
-            layout.places[joint.name] = Place(drive=_drive(layout, joint, algebra, values))
+            drive = _drive(layout, joint, algebra, values)
+            layout.drives[joint.name] = drive
+            layout.places[joint.name] = Place(drive=drive)
+    for constraint in model.constraints:
+        layout.drives[constraint.name] = _prescribed(layout, constraint, algebra, values)
     for coupling in model.couplings:
         _couple(layout, model, coupling.joint, followers, algebra, parameters)
+    for name, angle in formulation.level.items():
+        _measure_from_ground(layout, name, angle)
     return layout
+
+
+def floating(body: str) -> Free:
+    """The joint that a body's inertia edge is when it is a branch: all six freedoms against ground."""
+    return Free(body, (GROUND, f"{body}.{MASS_CENTER}"))
+
+
+def turning(joint: str, body: str) -> Spherical:
+    """The joint that an inertia edge is in rotation: the body's orientation against ground."""
+    return Spherical(body, (joint, body), effort=False)
 
 
 def _require_unique(quantities: list[Quantity]) -> None:
@@ -96,20 +146,55 @@ def _require_unique(quantities: list[Quantity]) -> None:
         seen.add(quantity.name)
 
 
-def _add_coordinates(layout: Layout, joint: Joint) -> None:
+def _add_coordinates(layout: Layout, joint: Joint, formulation: Formulation) -> bool:
+    """The coordinates of a joint that is a branch; whether efforts along it act along these alone."""
+    if joint.name not in formulation.joints:
+        return False
+    angle = formulation.level.get(joint.name)
+    if angle is None:
+        layout.places[joint.name] = _placed(layout, joint)
+        return True
+    own = joint if angle.less is not None else turning(joint.name, angle.body)
+    layout.places[joint.name] = _placed(layout, own)
+    return False
+
+
+def _placed(layout: Layout, joint: Joint) -> Place:
+    """New entries of the state for all coordinates of a joint."""
     q, v = joint.positions(), joint.velocities()
     first, start = len(layout.positions), len(layout.velocities)
-    layout.places[joint.name] = Place(
+    layout.positions += q
+    layout.velocities += v
+    return Place(
         tuple(Freedom(first + k) for k in range(len(q))),
         tuple(Freedom(start + k) for k in range(len(v))),
     )
-    layout.positions += q
-    layout.velocities += v
-    if joint.effort:
-        for k, velocity in enumerate(v):
-            layout.efforts.append((start + k, len(layout.inputs)))
-            unit = EFFORT_UNITS[velocity.unit]
-            layout.inputs.append(Quantity(velocity.name, unit, f"effort along {velocity.name}"))
+
+
+def _add_effort(layout: Layout, joint: Joint, along: bool) -> None:
+    """New inputs for the efforts of a joint, whether or not its coordinates are of the state."""
+    if not joint.effort:
+        return
+    first = len(layout.inputs)
+    for velocity in joint.velocities():
+        unit = EFFORT_UNITS[velocity.unit]
+        layout.inputs.append(Quantity(velocity.name, unit, f"effort along {velocity.name}"))
+    if along:
+        found = layout.places[joint.name].velocities
+        layout.efforts += [(f.index, first + k) for k, f in enumerate(found)]
+    elif joint.velocities():
+        layout.pushes[joint.name] = first
+
+
+def _measure_from_ground(layout: Layout, name: str, angle: Angle) -> None:
+    """Note what to subtract from an angle measured from ground to get the joint's own."""
+    place = layout.places[name]
+    less: tuple[list[Freedom], list[Freedom]] = ([], [])
+    for other, sign in angle.less or ():
+        found = layout.places[other]
+        for entries, (f,) in zip(less, (found.positions, found.velocities), strict=True):
+            entries.append(Freedom(f.index, -sign * f.ratio, -sign * f.offset))
+    layout.places[name] = replace(place, less=(tuple(less[0]), tuple(less[1])), level=True)
 
 
 def _quantity(declared: Input) -> Quantity:
@@ -149,12 +234,36 @@ def _drive(
     given = joint.drive if isinstance(joint.drive, (tuple, list)) else (joint.drive,)
     if len(given) != len(q):
         raise ModelError(who, f"prescribes {len(given)} motions for {len(q)} coordinates")
-    resolve = resolver(Jets(algebra), values)
+    return tuple(
+        _motion(layout, algebra, values, who, x, quantity)
+        for x, quantity in zip(given, q, strict=True)
+    )
+
+
+def _prescribed(
+    layout: Layout, constraint: Constraint, algebra: Algebra, values: Mapping[str, Scalar]
+) -> tuple[Jet | None, ...]:
+    """What a constraint prescribes as functions of time; None where it prescribes nothing."""
+    who = f'{constraint.kind} "{constraint.name}"'
+    return tuple(
+        None if x is None else _motion(layout, algebra, values, who, x, quantity)
+        for x, quantity in constraint.prescribed()
+    )
+
+
+def _motion(
+    layout: Layout,
+    algebra: Algebra,
+    values: Mapping[str, Scalar],
+    who: str,
+    given: Any,
+    quantity: Quantity,
+) -> Jet:
+    """A prescribed value with its first two derivatives, from an expression of t or from inputs."""
+    if given == BY_INPUT:
+        return _from_inputs(layout, algebra, quantity)
     try:
-        return tuple(
-            _from_inputs(layout, algebra, quantity) if x == BY_INPUT else lifted(resolve(x))
-            for x, quantity in zip(given, q, strict=True)
-        )
+        return lifted(resolver(Jets(algebra), values)(given))
     except ModelError as error:
         raise ModelError(who, f"motion: {error.problem}") from None
 
@@ -225,28 +334,6 @@ def _followed(master: Place, ratio: Scalar, offset: Scalar) -> Place:
     return Place((Freedom(q.index, ratio, offset),), (Freedom(v.index, ratio),))
 
 
-def scope(
-    model: Model,
-    layout: Layout,
-    algebra: Algebra,
-    parameters: Mapping[str, Scalar],
-    q: tuple[Scalar, ...],
-    v: tuple[Scalar, ...],
-) -> dict[str, Any]:
-    """Everything a law may name: parameters, inputs, t, coordinates and their rates as ``der(x)``."""
-    values: dict[str, Any] = {**parameters, **layout.named_inputs}
-    if model.depends_on_time:
-        values["t"] = algebra.symbol("t")
-    for joint in model.joints:
-        place = layout.places[joint.name]
-        at, rates = coordinates(place, q, v)
-        derivatives = rates if place.drive else joint.rates(algebra, at, rates)
-        for quantity, x, dx in zip(joint.positions(), at, derivatives, strict=True):
-            values[quantity.name] = x
-            values[f"der({quantity.name})"] = dx
-    return values
-
-
 def coordinates(
     place: Place, q: tuple[Scalar, ...], v: tuple[Scalar, ...]
 ) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
@@ -254,4 +341,13 @@ def coordinates(
     if place.drive:
         return tuple(x.x for x in place.drive), tuple(x.dx for x in place.drive)
     at = tuple(f.ratio * q[f.index] + f.offset for f in place.positions)
-    return at, tuple(f.ratio * v[f.index] for f in place.velocities)
+    rates = own_rates(place, v)
+    for own, near in zip(place.less[0], place.less[1], strict=True):
+        at = (at[0] + (own.ratio * q[own.index] + own.offset),)
+        rates = (rates[0] + near.ratio * v[near.index],)
+    return at, rates
+
+
+def own_rates(place: Place, v: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
+    """The velocities a joint has in the state, also where they are measured from ground."""
+    return tuple(f.ratio * v[f.index] for f in place.velocities)

@@ -3,25 +3,30 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from linegraph import vector
+from linegraph.closure import Chords
 from linegraph.elements import Element, Load
 from linegraph.elements.load import BODY
 from linegraph.errors import ModelError
-from linegraph.layout import coordinates, scope
+from linegraph.frames import Frame, seated
+from linegraph.joints import Joint
+from linegraph.kinematics import Seat
+from linegraph.orthogonality import set_label
 from linegraph.parameters import names_in, resolver
-from linegraph.rotation import IDENTITY_MATRIX, Full, product
-from linegraph.vector import ZERO, Matrix, Scalar, Vector, add, cross, dot, subtract
+from linegraph.rotation import Full, product
+from linegraph.scope import joint_state, scope
+from linegraph.vector import ZERO, Scalar, Vector, add, cross, dot, subtract, times
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from linegraph.algebra import Algebra
-    from linegraph.body import Placement
-    from linegraph.kinematics import KinematicTree
+    from linegraph.kinematics import Closure, KinematicTree
     from linegraph.model import Model
     from linegraph.orthogonality import Arm
+    from linegraph.scope import State
 
 
 @dataclass(frozen=True)
@@ -37,16 +42,6 @@ class Applied:
     wrenches: list[tuple[Vector, Vector]]
     efforts: list[Scalar]
     potential: Scalar = 0
-
-
-class _Point(NamedTuple):
-    """A terminal in motion: its link, its place there, and position and velocity in ground axes."""
-
-    link: int
-    at: Vector
-    rotation: Matrix
-    position: Vector
-    velocity: Vector
 
 
 def depends_on_inputs(model: Model, values: Sequence[Any]) -> bool:
@@ -74,29 +69,52 @@ def applied(
     found = [e for e in model.elements if depends_on_inputs(model, e.values()) == driven]
     if not found:
         return Applied([(ZERO, ZERO)] * len(tree.links), [0] * len(tree.velocities))
-    values = scope(model, tree.layout, algebra, parameters, q, v)
-    return _Evaluation(model, tree, algebra, values, crossed, q, v).of(found)
+    chords = Chords(tree, algebra, crossed, parameters)
+    return Acting(model, tree, algebra, parameters, chords, (q, v)).of(found)
 
 
-class _Evaluation:
-    """Gathers forces over all elements."""
+def efforts(
+    tree: KinematicTree, algebra: Algebra, chords: Chords, actions: Sequence[Scalar]
+) -> list[Scalar]:
+    """Q of the joints' efforts: at their own velocity, or projected where the joint is not the branch."""
+    total = list(actions)
+    for index, k in tree.layout.efforts:
+        total[index] = total[index] + algebra.symbol("u", k)
+    for joint, first in tree.layout.pushes.items():
+        place = tree.layout.own(joint)
+        if place is not None:
+            effort = algebra.symbol("u", first)
+            for freedom in (*place.velocities, *place.less[1]):
+                total[freedom.index] = total[freedom.index] + freedom.ratio * effort
+            continue
+        set_label(algebra, f"effort in {joint}")
+        (closure,) = (c for c in tree.closures if c.component.name == joint)
+        assert isinstance(closure.component, Joint)
+        given = [algebra.symbol("u", first + k) for k in range(closure.component.freedoms)]
+        for freedom, entry in chords.along(chords.effort(closure, given)):
+            total[freedom.index] = total[freedom.index] + entry
+    return total
+
+
+class Acting:
+    """Evaluates what elements and loads do at a state, and gathers it."""
 
     def __init__(
         self,
         model: Model,
         tree: KinematicTree,
         algebra: Algebra,
-        values: Mapping[str, Scalar],
-        crossed: Sequence[Arm],
-        q: tuple[Scalar, ...],
-        v: tuple[Scalar, ...],
+        parameters: Mapping[str, Scalar],
+        chords: Chords,
+        state: State,
     ) -> None:
+        """Nothing acts yet."""
         self._tree = tree
         self._algebra = algebra
-        self._values = values
-        self._state = (q, v)
+        self._state = state
+        self._chords = chords
+        self._values = scope(model, tree, algebra, parameters, state, self._chords)
         self._terminals = model.terminals()
-        self._frames = _frames_in_ground(tree, crossed)
         self._wrenches: list[tuple[Vector, Vector]] = [(ZERO, ZERO)] * len(tree.links)
         self._efforts: list[Scalar] = [0] * len(tree.velocities)
         self._potential: Scalar = 0
@@ -104,8 +122,7 @@ class _Evaluation:
     def of(self, elements: Sequence[Element | Load]) -> Applied:
         """All of them."""
         for element in elements:
-            if hasattr(self._algebra, "label"):
-                self._algebra.label = f"{element.kind} {element.name}"
+            set_label(self._algebra, f"{element.kind} {element.name}")
             try:
                 self._take(element)
             except ModelError as error:
@@ -114,104 +131,97 @@ class _Evaluation:
 
     def _take(self, element: Element | Load) -> None:
         if isinstance(element, Load):
-            self._load(element)
+            self._push(self.terminal(element.at), *self.load(element))
         elif element.joint is not None:
             self._in_joint(element, element.joint)
-        elif element.between is not None:
-            self._between(element, *element.between)
+        else:
+            self._between(element)
 
     def _resolve(self, value: Any, **names: Scalar) -> Scalar:
         return resolver(self._algebra, {**self._values, **names} if names else self._values)(value)
 
-    def _in_joint(self, element: Element, joint: str) -> None:
-        place = self._tree.layout.places[joint]
-        (x,), (v,) = coordinates(place, *self._state)
-        y = element.through(self._algebra, x, v, self._resolve)
-        for freedom in place.velocities:
-            self._efforts[freedom.index] = self._efforts[freedom.index] - freedom.ratio * y
-        self._store(element, x)
+    def in_joint(self, element: Element) -> tuple[Scalar, Scalar]:
+        """An element's coordinate, which is its joint's, and its through variable."""
+        x, v = self._motion(str(element.joint))
+        return x, element.through(self._algebra, x, v, self._resolve)
 
-    def _between(self, element: Element, tail: str, head: str) -> None:
-        a, b = self._point(tail), self._point(head)
-        line = subtract(b.position, a.position)
+    def between(self, element: Element) -> tuple[Scalar, Vector]:
+        """An element's length, and the pull on its tail in ground axes."""
+        assert element.between is not None
+        (_, a), (_, b) = (self.terminal(end) for end in element.between)
+        line = subtract(b.origin, a.origin)
         x = self._algebra.sqrt(dot(line, line))
         direction = vector.scale(1 / x, line)
-        v = dot(direction, subtract(b.velocity, a.velocity))
+        v = dot(direction, subtract(b.linear, a.linear))
         y = element.through(self._algebra, x, v, self._resolve)
-        pull = vector.scale(y, direction)
-        self._push(a, pull)
-        self._push(b, vector.negate(pull))
-        self._store(element, x)
+        return x, vector.scale(y, direction)
 
-    def _load(self, load: Load) -> None:
-        point = self._point(load.at)
+    def load(self, load: Load) -> tuple[Vector, Vector]:
+        """A load's force and torque in ground axes."""
+        _, frame = self.terminal(load.at)
         force, torque = (
             tuple(self._resolve(component) for component in given)
             for given in (load.force, load.torque)
         )
         if load.axes == BODY:
-            out = Full(point.rotation).out
-            force, torque = out(force), out(torque)
-        self._push(point, force, torque)
+            force, torque = times(frame.rotation, force), times(frame.rotation, torque)  # type: ignore[arg-type]
+        return force, torque  # type: ignore[return-value]
 
-    def _push(self, point: _Point, force: Vector, torque: Vector = ZERO) -> None:
-        """Apply a force and a torque in ground axes to a point of a link."""
-        if point.link < 0:
-            return
-        into = Full(self._frames[point.link].rotation).into
-        force, torque = into(force), into(torque)
-        torque = add(torque, cross(point.at, force))
-        known = self._wrenches[point.link]
-        self._wrenches[point.link] = (add(known[0], force), add(known[1], torque))
-
-    def _store(self, element: Element, x: Scalar) -> None:
-        self._potential = self._potential + element.potential(self._algebra, x, self._resolve)
-
-    def _point(self, terminal: str) -> _Point:
+    def terminal(self, terminal: str) -> tuple[int, Frame]:
+        """A terminal's link and its motion."""
         body, placement = self._terminals[terminal]
         link, pose = self._tree.bodies[body]
         constant = resolver(self._algebra, self._values)
-        at = add(pose.at, Full(pose.rotation).out(_resolved(placement.at, constant)))
-        axes = _axes(pose, placement, constant)
+        at = add(pose.at, times(pose.rotation, _resolved(placement.at, constant)))
+        rows = tuple(_resolved(row, constant) for row in placement.rotation)
+        axes = product(pose.rotation, rows)  # type: ignore[arg-type]
+        return link, seated(self._chords.frames, Seat(link, at, axes))
+
+    def _in_joint(self, element: Element, joint: str) -> None:
+        x, y = self.in_joint(element)
+        place = self._tree.layout.own(joint)
+        if place is not None:
+            for freedom in (*place.velocities, *place.less[1]):
+                known = self._efforts[freedom.index]
+                self._efforts[freedom.index] = known - freedom.ratio * y
+        else:
+            pair = self._chords.effort(self._closure(joint), [-y])
+            for freedom, entry in self._chords.along(pair):
+                self._efforts[freedom.index] = self._efforts[freedom.index] + entry
+        self._store(element, x)
+
+    def _motion(self, joint: str) -> tuple[Scalar, Scalar]:
+        """The coordinate of a joint of one freedom and its velocity."""
+        found = joint_state(self._tree, joint, self._state)
+        if found is None:
+            found = self._chords.coordinates(self._closure(joint))
+        (x,), (v,) = found
+        return x, v
+
+    def _closure(self, joint: str) -> Closure:
+        return next(c for c in self._tree.closures if c.component.name == joint)
+
+    def _between(self, element: Element) -> None:
+        assert element.between is not None
+        x, pull = self.between(element)
+        a, b = (self.terminal(end) for end in element.between)
+        self._push(a, pull)
+        self._push(b, vector.negate(pull))
+        self._store(element, x)
+
+    def _push(self, at: tuple[int, Frame], force: Vector, torque: Vector = ZERO) -> None:
+        """Apply a force and a torque in ground axes to a point of a link."""
+        link, point = at
         if link < 0:
-            return _Point(link, at, axes, at, ZERO)
-        frame = self._frames[link]
-        out = Full(frame.rotation).out
-        velocity = out(add(frame.linear, cross(frame.angular, at)))
-        x, y, z = (out(column) for column in vector.transpose(axes))
-        turned = vector.transpose((x, y, z))
-        return _Point(link, at, turned, add(frame.origin, out(at)), velocity)
+            return
+        frame = self._chords.frames[link]
+        torque = add(torque, cross(subtract(point.origin, frame.origin), force))
+        into = Full(frame.rotation).into
+        known = self._wrenches[link]
+        self._wrenches[link] = (add(known[0], into(force)), add(known[1], into(torque)))
 
-
-class _Frame(NamedTuple):
-    """A link in ground: its axes and origin there, its velocities in its own axes."""
-
-    rotation: Matrix
-    origin: Vector
-    angular: Vector
-    linear: Vector
-
-
-def _frames_in_ground(tree: KinematicTree, crossed: Sequence[Arm]) -> list[_Frame]:
-    """Position circuit equations from ground outward."""
-    frames: list[_Frame] = []
-    ground = _Frame(IDENTITY_MATRIX, ZERO, ZERO, ZERO)
-    for link, arm in zip(tree.links, crossed, strict=True):
-        near = frames[link.parent] if link.parent >= 0 else ground
-        into = arm.rotation.into
-        x, y, z = (into(row) for row in near.rotation)
-        origin = add(near.origin, Full(near.rotation).out(arm.at))
-        angular = add(into(near.angular), vector.combine(arm.rates, arm.motion.angular))
-        linear = into(add(near.linear, cross(near.angular, arm.at)))
-        linear = add(linear, vector.combine(arm.rates, arm.motion.linear))
-        frames.append(_Frame((x, y, z), origin, angular, linear))
-    return frames
-
-
-def _axes(pose: Placement, placement: Placement, resolve: Any) -> Matrix:
-    """A terminal's axes in its link's working frame."""
-    x, y, z = (_resolved(row, resolve) for row in placement.rotation)
-    return product(pose.rotation, (x, y, z))
+    def _store(self, element: Element, x: Scalar) -> None:
+        self._potential = self._potential + element.potential(self._algebra, x, self._resolve)
 
 
 def _resolved(a: Vector, resolve: Any) -> Vector:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from linegraph import vector
+from linegraph.joints import Moments
 from linegraph.kinematics import KinematicTree, carried, joined
 from linegraph.layout import Freedom
 from linegraph.orthogonality import Arm, applied_to, caption, gathered, projection, set_label
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from linegraph.algebra import Algebra
-    from linegraph.joints import Moments
 
 Rows = list[list[Scalar]]
 Column = Iterator[tuple[Freedom, Scalar]]
@@ -101,6 +101,8 @@ def ground_is_cheaper(tree: KinematicTree, crossed: list[Arm]) -> bool:
     Estimated in operations: from frame to frame the turning of two vectors and a lever, at every step;
     in ground 11 at every step, and about 60 for each link and 40 for each column to get there.
     """
+    if tree.levelled:
+        return False
     inward: list[int] = []
     depth: list[int] = []
     by_frames = in_ground = 0
@@ -126,7 +128,11 @@ def composites(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> lis
         link = tree.links[i]
         if link.parent >= 0:
             set_label(algebra, f"carried by {caption(link)}")
-            seen = carried(moments[i], crossed[i].rotation, crossed[i].at)
+            carry = moments[i]
+            if crossed[i].level:
+                # what turns against ground moves with its parent like a point
+                carry = Moments(carry.mass, ZERO, (0, 0, 0, 0, 0, 0))
+            seen = carried(carry, crossed[i].rotation, crossed[i].at)
             moments[link.parent] = joined(moments[link.parent], seen)
     return moments
 

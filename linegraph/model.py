@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from linegraph.assemblies import add_basement, add_rotor
+from linegraph.assemblies import add_basement, add_rotor, welded
 from linegraph.body import GROUND, MASS_CENTER, Body, Placement, inertia_of, unit
 from linegraph.checks import finite, nearest, plain, vector
+from linegraph.choices import COORDINATES, REACTION_AXES, Choices
+from linegraph.constraints import Blade, Constraint, Driver, Rod, Rolling
+from linegraph.constraints.relation import Relation
 from linegraph.elements import Damper, Element, Friction, Law, Load, Spring, Stop
 from linegraph.elements.load import BODY, WORLD
 from linegraph.errors import ModelError
@@ -26,10 +29,11 @@ from linegraph.joints import (
     Universal,
 )
 from linegraph.joints.base import BY_INPUT
+from linegraph.outputs import Output
 from linegraph.parameters import Input, Parameter, is_number, names_in
 from linegraph.terminals import system_graph, terminals_of
 from linegraph.vector import ZERO, Vector
-from linegraph.words import BodyHandle, Kind, Terminal, adds, applies
+from linegraph.words import BodyHandle, Kind, Limit, Terminal, adds, applies, constrains
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -88,6 +92,9 @@ class Model:
         self.parameters: dict[str, Parameter] = {}
         self._inputs: dict[str, Input] = {}
         self._elements: dict[str, Element | Load] = {}
+        self._constraints: dict[str, Constraint | Relation] = {}
+        self.choices = Choices()
+        self.outputs: list[Output] = []
         self.warnings: list[str] = []
         # where a file said what, for errors found later: the file, and a line for each thing
         self.source: str | None = None
@@ -100,6 +107,11 @@ class Model:
     friction = applies(Friction)
     stop = applies(Stop)
     law = applies(Law)
+
+    rod = constrains(Rod)
+    driver = constrains(Driver)
+    rolling = constrains(Rolling)
+    blade = constrains(Blade)
 
     revolute = adds(Revolute)
     prismatic = adds(Prismatic)
@@ -174,10 +186,21 @@ class Model:
         return tuple(self._elements.values())
 
     @property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """The constraints with edges in declared order."""
+        return tuple(c for c in self._constraints.values() if isinstance(c, Constraint))
+
+    @property
+    def relations(self) -> tuple[Relation, ...]:
+        """The constraints between velocities in declared order."""
+        return tuple(c for c in self._constraints.values() if isinstance(c, Relation))
+
+    @property
     def depends_on_time(self) -> bool:
         """Whether a prescribed motion or a law names the time t."""
         values = [value for joint in self.joints for value in _values(joint.drive)]
         values += [value for element in self.elements for value in element.values()]
+        values += [value for limit in self._constraints.values() for value in limit.values()]
         return any("t" in names_in(value) for value in values)
 
     def body(
@@ -265,13 +288,64 @@ class Model:
             ModelError: the name is taken, or the element has no place or two.
         """
         who = f'{element.kind} "{element.name}"'
-        if element.name in self._elements or element.name in self._joints:
+        if any(element.name in taken for taken in (self._elements, self._joints, self._constraints)):
             raise ModelError(who, "the name is taken; names of joints and elements are unique")
         if isinstance(element, Element) and (element.between is None) == (element.joint is None):
             raise ModelError(who, "give either between=(tail, head) or joint=...")
         finite(element.values(), who)
         self._elements[element.name] = element
         return element
+
+    def add_constraint(self, constraint: Limit) -> Limit:
+        """Add a constraint made elsewhere; ``model.rod(...)`` and its siblings are the friendly way.
+
+        Raises:
+            ModelError: the name is taken.
+        """
+        self._add_limit(constraint)
+        return constraint
+
+    def relation(self, name: str, rate: Any) -> Relation:
+        """Constrain velocities by an expression that is zero and linear in rates; see `Relation`."""
+        return self._add_limit(Relation(name, rate))
+
+    def _add_limit(self, limit: Any) -> Any:
+        who = f'{limit.kind} "{limit.name}"'
+        if any(limit.name in taken for taken in (self._joints, self._elements, self._constraints)):
+            raise ModelError(who, "the name is taken; joints, elements and constraints share names")
+        finite(limit.values(), who)
+        return self._constraints.setdefault(limit.name, limit)
+
+    def output(self, name: str, value: Any, unit: str = "", about: str = "") -> Output:
+        """Ask for a quantity in the emitted code; see `observation` for what its expression may name.
+
+        Raises:
+            ModelError: the name is taken.
+        """
+        if any(known.name == name for known in self.outputs):
+            raise ModelError(f'output "{name}"', "is declared twice")
+        self.outputs.append(Output(name, value, unit, about))
+        return self.outputs[-1]
+
+    def formulation(self, **choices: Any) -> Choices:
+        """Choose the tree, the coordinates and how results are shown; see `Choices`.
+
+        Example:
+            >>> Model("arm").formulation(coordinates="absolute").kind("any body")
+            'absolute'
+
+        Raises:
+            ModelError: there is no such kind of coordinates or of axes.
+        """
+        chosen = replace(self.choices, **choices)
+        for kind in (chosen.coordinates, *chosen.of_body.values()):
+            if kind not in COORDINATES:
+                raise ModelError("formulation", f'coordinates "{kind}"; {nearest(kind, COORDINATES)}')
+        if chosen.reactions not in REACTION_AXES:
+            problem = f'reactions "{chosen.reactions}"; {nearest(chosen.reactions, REACTION_AXES)}'
+            raise ModelError("formulation", problem)
+        self.choices = chosen
+        return chosen
 
     def rotor(self, name: str, joint: str | Joint, inertia: Any, ratio: Any = 1) -> BodyHandle:
         """Add a motor's rotor behind a gear at a revolute joint: it turns `ratio` times as fast.
@@ -332,27 +406,13 @@ class Model:
             raise ModelError(who, f"is {found.kind}; only joints of one freedom can be locked")
         finite((value,), who)
         self._couplings.pop(joint, None)
-        self._weld(found, value)
+        self._joints[joint] = welded(self, found, value)
         for coupling in list(self.couplings):
             if coupling.master == joint:
                 if any(isinstance(x, (str, Formula)) for x in (coupling.ratio, coupling.offset)):
                     problem = f'follows "{joint}" by a text; lock it first, at a value'
                     raise ModelError(f'joint "{coupling.joint}"', problem)
                 self.lock(coupling.joint, coupling.ratio * value + coupling.offset)
-
-    def _weld(self, joint: Joint, value: float) -> None:
-        """Replace a joint by a fixed one at its tail frame moved by `value`."""
-        from linegraph.kinematics import moved
-
-        tail, head = joint.between
-        terminals = self.terminals()
-        if tail not in terminals:
-            who = f'joint "{joint.name}"'
-            raise ModelError(who, f'there is no body or frame "{tail}"; {nearest(tail, terminals)}')
-        body, placement = terminals[tail]
-        frame = f"{joint.name}.locked"
-        terminal = self.add_frame(body, frame, moved(placement, joint, value, self.snap))
-        self._joints[joint.name] = Fixed(joint.name, (terminal, head))
 
     def terminals(self) -> dict[str, tuple[str, Placement]]:
         """Every terminal a joint may be connected to: its body and its placement there.

@@ -21,7 +21,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph import vector
 from linegraph.joints import Moments, Motion
-from linegraph.layout import coordinates
+from linegraph.layout import coordinates, own_rates
+from linegraph.rotation import Full, Rotation
 from linegraph.vector import ZERO, Scalar, Vector, add, cross, dot, subtract
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from linegraph.algebra import Algebra
     from linegraph.kinematics import KinematicTree, Link
     from linegraph.loads import Applied
-    from linegraph.rotation import Inertia, Rotation
+    from linegraph.rotation import Inertia
 
 
 class Arm(NamedTuple):
@@ -42,6 +43,8 @@ class Arm(NamedTuple):
         motion: the joint's motion, turned round where its edge points to ground.
         rates: the joint's velocity coordinates.
         prescribed: their derivatives where the motion is prescribed; none where it is free.
+        level: whether the link turns against ground and not against its parent: in rotation its inertia
+            edge is the branch.
     """
 
     rotation: Rotation
@@ -49,6 +52,7 @@ class Arm(NamedTuple):
     motion: Motion
     rates: tuple[Scalar, ...]
     prescribed: tuple[Scalar, ...] = ()
+    level: bool = False
 
 
 class Spin(NamedTuple):
@@ -68,13 +72,37 @@ def arms(
     for link in tree.links:
         set_label(algebra, f"joint {link.joint.name}")
         positions, rates = coordinates(link.place, q, v)
+        if link.place.level:
+            rates = own_rates(link.place, v)
         motion = link.joint.motion(algebra, positions, rates)
         if not link.forward:
             motion = reverse(motion)
-        rotation = link.rotation @ motion.rotation
+        if link.in_space:
+            rotation = _against_parent(tree, found, link, motion.rotation)
+        else:
+            rotation = link.rotation @ motion.rotation
         at = add(link.at, link.rotation.out(motion.displacement))
-        found.append(Arm(rotation, at, motion, rates, tuple(x.ddx for x in link.place.drive)))
+        prescribed = tuple(x.ddx for x in link.place.drive)
+        found.append(Arm(rotation, at, motion, rates, prescribed, link.place.level))
     return found
+
+
+def _against_parent(
+    tree: KinematicTree, crossed: list[Arm], link: Link, absolute: Rotation
+) -> Rotation:
+    """The rotation to the parent's axes of a link whose rotation to ground axes is given."""
+    outward: list[Rotation] = []
+    i = link.parent
+    while i >= 0:
+        near = tree.links[i]
+        outward.append(crossed[i].motion.rotation if near.in_space else crossed[i].rotation)
+        i = -1 if near.in_space else near.parent
+    matrix = absolute.matrix()
+    for rotation in reversed(outward):
+        matrix = vector.transpose(
+            tuple(rotation.into(column) for column in vector.transpose(matrix))  # type: ignore[arg-type]
+        )
+    return Rotation((Full(matrix),))
 
 
 def reverse(motion: Motion) -> Motion:
@@ -160,7 +188,8 @@ def energy(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> tuple[S
         angular, linear = velocities[link.parent] if link.parent >= 0 else (ZERO, ZERO)
         linear = arm.rotation.into(add(linear, cross(angular, arm.at)))
         linear = add(linear, vector.combine(arm.rates, arm.motion.linear))
-        angular = add(arm.rotation.into(angular), vector.combine(arm.rates, arm.motion.angular))
+        turned = ZERO if arm.level else arm.rotation.into(angular)
+        angular = add(turned, vector.combine(arm.rates, arm.motion.angular))
         velocities.append((angular, linear))
         mass, first, inertia = link.moments
         momentum = add(vector.scale(mass, linear), cross(angular, first))
@@ -179,7 +208,10 @@ def coordinate_rates(
         places = link.place.positions
         if any(f.ratio != 1 or f.offset != 0 for f in places):
             continue
-        own = link.joint.rates(algebra, *coordinates(link.place, q, v)) if places else ()
+        at, own_v = coordinates(link.place, q, v)
+        if link.place.level:
+            own_v = own_rates(link.place, v)
+        own = link.joint.rates(algebra, at, own_v) if places else ()
         for freedom, rate in zip(places, own, strict=True):
             rates[freedom.index] = rate
     return rates
@@ -202,7 +234,8 @@ def _spins(
         set_label(algebra, f"motion, {caption(link)}")
         near = spins[link.parent] if link.parent >= 0 else ground
         velocity, angular, linear = _relative(arm, near.velocity)
-        angular = add(arm.rotation.into(near.angular), angular)
+        if not arm.level:
+            angular = add(arm.rotation.into(near.angular), angular)
         linear = add(arm.rotation.into(add(near.linear, _accelerated(near, arm.at))), linear)
         if a is not None and link.velocities:
             own = tuple(f.ratio * a[f.index] for f in link.velocities)
@@ -220,6 +253,9 @@ def _relative(arm: Arm, near: Vector) -> tuple[Vector, Vector, Vector]:
     """
     motion = arm.motion
     w = vector.combine(arm.rates, motion.angular)
+    if arm.level:
+        # such joints have no shift: their origin moves with the near link alone
+        return w, motion.angular_bias, ZERO
     u = vector.combine(arm.rates, motion.linear)
     carried_w = arm.rotation.into(near)
     velocity = add(carried_w, w)
@@ -318,8 +354,13 @@ def _potential(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> Sca
 
 
 def gathered(arm: Arm, force: Vector, torque: Vector) -> tuple[Vector, Vector]:
-    """Cutset equation with its connecting term: carry a force and a torque across an arm inward."""
+    """Cutset equation with its connecting term: carry a force and a torque across an arm inward.
+
+    The torque on a link that turns against ground ends there, in its inertia edge.
+    """
     force = arm.rotation.out(force)
+    if arm.level:
+        return force, cross(arm.at, force)
     return force, add(arm.rotation.out(torque), cross(arm.at, force))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -132,3 +133,13 @@ def names_in(x: Any) -> set[str]:
     if isinstance(x, Parameter):
         return {x.name}
     return {symbol.name for symbol in getattr(x, "free_symbols", ())}
+
+
+def sample_values(parameters: Iterable[Parameter], algebra: Algebra) -> dict[str, Scalar]:
+    """Each parameter's value, or some positive number where it has none: to judge what holds for all."""
+    draw = random.Random(0)
+
+    def given(parameter: Parameter) -> float:
+        return draw.uniform(0.5, 2.0) if parameter.value is None else float(parameter.value)
+
+    return valued(parameters, algebra, given)

@@ -7,7 +7,7 @@ a reader should know of them stands in the labels and in the texts of the `Modul
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from linegraph.expression import NEG, SUB, SYMBOL, Node, Operand
 
@@ -94,6 +94,47 @@ class Program:
 
 
 @dataclass(frozen=True)
+class Routine:
+    """A function that iterates or decides while it runs: its body is an algorithm each language has written.
+
+    Attributes:
+        algorithm: which; the name of a template.
+        statuses: what each status other than 0 means.
+        uses: the functions it calls.
+        details: what the algorithm needs to know of this module: numbers and lists of numbers.
+    """
+
+    name: str
+    about: str
+    arguments: tuple[Argument, ...]
+    results: tuple[Result, ...]
+    algorithm: str
+    statuses: tuple[tuple[int, str], ...]
+    uses: tuple[str, ...]
+    details: tuple[tuple[str, Any], ...] = ()
+    status: bool = True
+    calls: tuple[Call, ...] = ()
+
+
+@dataclass(frozen=True)
+class Listing:
+    """Quantities of one kind, listed in the head of a file and by a count and an array of names.
+
+    Attributes:
+        symbol: what the quantities are called in formulas, and in the array's name.
+        count: the name of their number; empty for those without count and array.
+        heading: what they are, in the plural.
+        sizes: the results that have so many entries.
+    """
+
+    symbol: str
+    count: str
+    heading: str
+    quantities: tuple[Quantity, ...]
+    sizes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Module:
     """All functions of one model and what their reader must know.
 
@@ -101,6 +142,8 @@ class Module:
         name: the prefix of everything emitted; an identifier.
         about: paragraphs for the head of the file.
         time: whether the functions take the time ``t``.
+        listings: further quantities of the model's functions.
+        counts: further numbers that have a name.
     """
 
     name: str
@@ -110,7 +153,9 @@ class Module:
     inputs: tuple[Quantity, ...]
     parameters: tuple[Quantity, ...]
     time: bool
-    programs: tuple[Program, ...]
+    programs: tuple[Program | Routine, ...]
+    listings: tuple[Listing, ...] = ()
+    counts: tuple[tuple[str, int], ...] = ()
 
 
 def assemble(

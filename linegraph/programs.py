@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from linegraph import orthogonality
+from linegraph import closed_programs, edge_programs, orthogonality
 from linegraph.articulated import forward_dynamics
+from linegraph.closure import Chords, equations
 from linegraph.errors import ModelError
 from linegraph.expression import Dag, Node
 from linegraph.factorization import Solution, solve
-from linegraph.loads import Applied, applied
+from linegraph.loads import Applied, applied, efforts
 from linegraph.mass_matrix import mass_matrix
 from linegraph.parameters import valued
 from linegraph.program import (
@@ -21,19 +23,28 @@ from linegraph.program import (
     Program,
     Quantity,
     Result,
+    Routine,
     assemble,
     reads,
 )
 from linegraph.regularity import SINGULAR, is_solid
+from linegraph.scope import relations
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Iterable
 
     from linegraph.derive import Derivation
     from linegraph.vector import Scalar
 
 
-def module_of(derivation: Derivation, name: str, *, folded: bool, about: Iterable[str]) -> Module:
+def module_of(
+    derivation: Derivation,
+    name: str,
+    *,
+    folded: bool,
+    about: Iterable[str],
+    wanted: Iterable[str] = (),
+) -> Module:
     """All functions of a model.
 
     Args:
@@ -41,54 +52,63 @@ def module_of(derivation: Derivation, name: str, *, folded: bool, about: Iterabl
         name: prefix of everything emitted; an identifier.
         folded: whether parameters become numbers.
         about: paragraphs for the head of the file.
+        wanted: further functions to emit, of `ON_REQUEST`.
 
     Raises:
-        ModelError: a parameter has no value.
+        ModelError: a parameter has no value, or a closed model cannot be assembled.
     """
     parameters = _parameters(derivation)
-    functions = _Functions(derivation, folded or not parameters)
-    programs = tuple(make(functions) for make in PROGRAMS)
+    functions = Functions(derivation, folded or not parameters)
+    chosen = [key for key in PROGRAMS if key not in ON_REQUEST or key in tuple(wanted)]
+    programs = tuple(program for key in chosen for program in PROGRAMS[key](functions))
     functions.dag.release()
     tree = functions.tree
+    closed = closed_programs.listings(functions) if tree.closed else ()
     return Module(
         name=name,
-        about=tuple(about),
+        about=(*about, *closed_programs.remarks(functions)),
         positions=tree.positions,
         velocities=tree.velocities,
         inputs=tree.inputs,
         parameters=() if folded else parameters,
         time=derivation.model.depends_on_time,
         programs=programs,
+        listings=(*closed, *edge_programs.listings(functions, chosen)),
+        counts=closed_programs.counts(functions) if tree.closed else (),
     )
 
 
-class _Functions:
+class Functions:
     """What several functions share: the DAG, the tree over it, M and h."""
 
     def __init__(self, derivation: Derivation, folded: bool) -> None:
         self.dag = Dag()
-        self._model = derivation.model
-        self._head = ["p"] if not folded else []
-        self._head += ["t"] if derivation.model.depends_on_time else []
-        self._values = valued(
+        self.derivation = derivation
+        self.model = derivation.model
+        self.head = ["p"] if not folded else []
+        self.head += ["t"] if derivation.model.depends_on_time else []
+        self.values = valued(
             derivation.model.parameters.values(),
             self.dag,
             lambda p: p.value if folded else self.dag.symbol("p", p.name),
         )
-        self.tree = derivation.tree(self.dag, self._values)
+        self.tree = derivation.tree(self.dag, self.values)
         self.short = self.tree.regrouped()
-        self._sizes = {
+        self.equations = equations(self.tree)
+        self.sizes = {
             "q": len(self.tree.positions),
             "v": len(self.tree.velocities),
             "a": len(self.tree.velocities),
             "u": len(self.tree.inputs),
+            "lam": len(self.equations),
         }
+        self.texts = ARGUMENTS
         self.q = self.symbols("q")
         self.v = self.symbols("v")
 
     def symbols(self, name: str) -> list[Scalar]:
         """The entries of an argument."""
-        return [self.dag.symbol(name, i) for i in range(self._sizes[name])]
+        return [self.dag.symbol(name, i) for i in range(self.sizes[name])]
 
     def program(
         self,
@@ -109,8 +129,8 @@ class _Functions:
             place = sum(argument in ("q", "v") for argument in arguments)
             arguments = (*arguments[:place], "u", *arguments[place:])
         given = tuple(
-            Argument(argument, self._sizes.get(argument), ARGUMENTS[argument])
-            for argument in (*self._head, *arguments)
+            Argument(argument, self.sizes.get(argument), ARGUMENTS[argument])
+            for argument in (*self.head, *arguments)
         )
         return assemble(name, about, given, results, checks, calls, status=status)
 
@@ -127,7 +147,7 @@ class _Functions:
     def _applied(self, *, driven: bool) -> Applied:
         state = (tuple(self.q), tuple(self.v))
         return applied(
-            self._model, self.short, self.dag, self._values, self.arms, *state, driven=driven
+            self.model, self.short, self.dag, self.values, self.arms, *state, driven=driven
         )
 
     @cached_property
@@ -150,12 +170,29 @@ class _Functions:
         return [used[i * size : (i + 1) * size] for i in range(size)]
 
     @cached_property
+    def chords(self) -> Chords:
+        """The constraints at (q, v)."""
+        rates = orthogonality.coordinate_rates(self.tree, self.dag, self.q, self.v)
+        state = (tuple(self.q), tuple(self.v))
+        found = relations(self.model, self.tree, self.dag, self.values, state, rates)
+        return Chords(self.tree, self.dag, self.arms, self.values, found)
+
+    @cached_property
+    def jacobian(self) -> list[list[Scalar]]:
+        """J."""
+        return self.chords.jacobian()
+
+    @cached_property
+    def driven_constraints(self) -> bool:
+        """Whether constraints depend on inputs: on motions prescribed by some."""
+        results = (Result("J", (), (*self.chords.position(), *self.chords.rates(self.v)), ""),)
+        return reads("u", results)
+
+    @cached_property
     def efforts(self) -> list[Scalar]:
         """Q: joint efforts at their velocities, and what driven elements do."""
-        efforts = orthogonality.generalised_forces(self.short, self.dag, self.arms, self.active)
-        for index, k in self.tree.layout.efforts:
-            efforts[index] = efforts[index] + self.dag.symbol("u", k)
-        return efforts
+        active = orthogonality.generalised_forces(self.short, self.dag, self.arms, self.active)
+        return efforts(self.short, self.dag, self.chords, active)
 
     @cached_property
     def bias(self) -> Result:
@@ -173,24 +210,25 @@ ARGUMENTS = {
     "v": "velocities",
     "a": "accelerations, the derivatives of v",
     "u": "inputs",
+    "lam": "multipliers of the constraints",
 }
 
 
-def _mass_matrix(f: _Functions) -> Program:
+def _mass_matrix(f: Functions) -> Program:
     return f.program("mass_matrix", "Mass matrix M(q).", ("q",), (f.mass_matrix,))
 
 
-def _bias(f: _Functions) -> Program:
+def _bias(f: Functions) -> Program:
     about = "Bias h(q, v): gravity, Coriolis and centrifugal terms."
     return f.program("bias", about, ("q", "v"), (f.bias,))
 
 
-def _equations(f: _Functions) -> Program:
+def _equations(f: Functions) -> Program:
     about = "Mass matrix M(q) and bias h(q, v) at once, sharing work."
     return f.program("equations", about, ("q", "v"), (f.mass_matrix, f.bias))
 
 
-def _inverse_dynamics(f: _Functions) -> Program:
+def _inverse_dynamics(f: Functions) -> Program:
     a = f.symbols("a")
     tau = orthogonality.inverse_dynamics(f.short, f.dag, f.arms, a, f.passive)
     result = Result("tau", (len(tau),), tuple(tau), "generalised forces along v")
@@ -198,26 +236,26 @@ def _inverse_dynamics(f: _Functions) -> Program:
     return f.program("inverse_dynamics", about, ("q", "v", "a"), (result,))
 
 
-def _forward_dynamics(f: _Functions) -> Program:
+def _forward_dynamics(f: Functions) -> Program:
     """By factored mass matrix or by articulated inertias, whichever takes fewer operations.
 
     With solid bodies M cannot become singular, so articulated inertias need no scale to judge pivots by;
     where some link is not solid, the factors do the judging.
     """
-    if f.tree.coupled or not all(is_solid(link) for link in f.tree.links if link.numeric):
+    if f.tree.coupled or f.tree.levelled or not all(is_solid(link) for link in f.tree.links if link.numeric):
         return _factored(f)
     articulated = _articulated(f)
     return articulated if articulated.operations < _factored_cost(f) else _factored(f)
 
 
-def _articulated(f: _Functions) -> Program:
+def _articulated(f: Functions) -> Program:
     passive = orthogonality.generalised_forces(f.short, f.dag, f.arms, f.passive)
     total = [effort + load for effort, load in zip(f.efforts, passive, strict=True)]
     solution = forward_dynamics(f.short, f.dag, f.arms, total)
     return _solved(f, solution, [0] * len(solution.pivots), ())
 
 
-def _factored(f: _Functions) -> Program:
+def _factored(f: Functions) -> Program:
     """Call `equations` for M and h, then M = L^T D L in straight lines."""
     size = len(f.v)
     f.dag.label = "right-hand side Q - h"
@@ -234,7 +272,7 @@ def _factored(f: _Functions) -> Program:
     return _solved(f, solution, bounds, (Call("equations", names, local),))
 
 
-def _factored_cost(f: _Functions) -> int:
+def _factored_cost(f: Functions) -> int:
     """Operations of `equations` and of what `_factored` adds: p(p+1) + 4p + 3 for p couplings inward."""
     place = {k: n for n, k in enumerate(f.tree.outward)}
     inward = [
@@ -245,7 +283,7 @@ def _factored_cost(f: _Functions) -> int:
 
 
 def _solved(
-    f: _Functions, solution: Solution, bounds: list[Scalar], calls: tuple[Call, ...]
+    f: Functions, solution: Solution, bounds: list[Scalar], calls: tuple[Call, ...]
 ) -> Program:
     checks = tuple(
         Check(pivot, bound, i + 1, f"the mass matrix is singular at {f.tree.velocities[i].name}")
@@ -259,14 +297,14 @@ def _solved(
     return f.program("forward_dynamics", about, given, (result,), checks, calls, status=True)
 
 
-def _coordinate_rates(f: _Functions) -> Program:
+def _coordinate_rates(f: Functions) -> Program:
     rates = orthogonality.coordinate_rates(f.tree, f.dag, f.q, f.v)
     result = Result("qdot", (len(rates),), tuple(rates), "derivatives of q")
     about = "Coordinate rates qdot = N(q) v."
     return f.program("coordinate_rates", about, ("q", "v"), (result,))
 
 
-def _energy(f: _Functions) -> Program:
+def _energy(f: Functions) -> Program:
     crossed = orthogonality.arms(f.tree, f.dag, f.q, f.v)
     kinetic, potential = orthogonality.energy(f.tree, f.dag, crossed)
     stored = potential + f.passive.potential
@@ -278,16 +316,30 @@ def _energy(f: _Functions) -> Program:
     return f.program("energy", about, ("q", "v"), (result,))
 
 
-PROGRAMS: tuple[Callable[[_Functions], Program], ...] = (
-    _mass_matrix,
-    _bias,
-    _equations,
-    _inverse_dynamics,
-    _forward_dynamics,
-    _coordinate_rates,
-    _energy,
-)
-"""The register of emitted functions, in emitted order."""
+Maker = Callable[[Functions], tuple[Program | Routine, ...]]
+
+PROGRAMS: dict[str, Maker] = {
+    "mass_matrix": lambda f: (_mass_matrix(f),),
+    "bias": lambda f: (_bias(f),),
+    "equations": lambda f: (_equations(f),),
+    "inverse_dynamics": lambda f: (_inverse_dynamics(f),),
+    "constraints": closed_programs.constraints,
+    "forward_dynamics": lambda f: (
+        closed_programs.forward_dynamics(f) if f.tree.closed else (_forward_dynamics(f),)
+    ),
+    "coordinate_rates": lambda f: (_coordinate_rates(f),),
+    "energy": lambda f: (_energy(f),),
+    "project": closed_programs.project,
+    "reduction": closed_programs.reduction,
+    "across": edge_programs.across,
+    "reactions": edge_programs.reactions,
+    "power": edge_programs.power,
+    "outputs": edge_programs.outputs,
+}
+"""The register of emitted functions, in emitted order: what a user may ask for, and what makes them."""
+
+ON_REQUEST = ("power",)
+"""Emitted only where they are asked for."""
 
 
 def _parameters(derivation: Derivation) -> tuple[Quantity, ...]:

@@ -10,20 +10,18 @@ from linegraph.errors import ModelError
 from linegraph.kinematics import KinematicTree, Link, kinematic_tree
 from linegraph.mass_matrix import composites, mass_matrix
 from linegraph.orthogonality import arms
-from linegraph.parameters import Parameter, valued
+from linegraph.parameters import sample_values
 
 if TYPE_CHECKING:
-    from linegraph.algebra import Algebra
+    from linegraph.formulation import Formulation
     from linegraph.joints import Moments
     from linegraph.model import Model
-    from linegraph.topology import Topology
-    from linegraph.vector import Scalar
 
 SINGULAR = 1e-13
 """A pivot of M below this fraction of what it was made of is zero up to rounding."""
 
 
-def require_regular(model: Model, topology: Topology) -> None:
+def require_regular(model: Model, formulation: Formulation) -> None:
     """Refuse a model one of whose coordinates moves no inertia.
 
     Bodies with mass and inertia in every direction make M regular by themselves; only where some body
@@ -33,11 +31,11 @@ def require_regular(model: Model, topology: Topology) -> None:
         ModelError: names the joint.
     """
     anywhere = Floats(t=0.37, u=_Anything())
-    tree = kinematic_tree(model, topology, anywhere, _sample_values(model, anywhere))
+    tree = kinematic_tree(model, formulation, anywhere, sample_values(model.parameters.values(), anywhere))
     if not tree.velocities:
         raise ModelError(f'model "{model.name}"', "no joint can move: there is nothing to derive")
-    if all(is_solid(link) for link in tree.links):
-        return
+    if tree.closed or all(is_solid(link) for link in tree.links):
+        return  # with constraints, whether M is regular on the motions they allow is asked at assembly
     failures = [_first_dependent(tree, seed) for seed in (1, 2)]
     if all(failures):
         index, pivot = failures[-1] or (0, 0.0)
@@ -62,16 +60,6 @@ class _Anything:
 
     def __getitem__(self, place: int) -> float:
         return 0.1 + 0.07 * place
-
-
-def _sample_values(model: Model, algebra: Algebra) -> dict[str, Scalar]:
-    """Each parameter's value, or some positive number where it has none."""
-    draw = random.Random(0)
-
-    def given(parameter: Parameter) -> float:
-        return draw.uniform(0.5, 2.0) if parameter.value is None else float(parameter.value)
-
-    return valued(model.parameters.values(), algebra, given)
 
 
 def is_solid(link: Link) -> bool:

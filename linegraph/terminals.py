@@ -59,6 +59,9 @@ def system_graph(model: Model) -> SystemGraph:
         graphs.append([Edge(joint.name, joint.name, d, *joint.between) for d in MECHANICAL])
     for element in model.elements:
         graphs.append(_element_edges(model, element, terminals))
+    for limit in model.constraints:
+        _require_ends(f'{limit.kind} "{limit.name}"', limit.ends, terminals)
+        graphs.append([Edge(limit.name, limit.name, d, *limit.ends) for d in MECHANICAL])
     return unite(graphs)
 
 

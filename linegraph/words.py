@@ -1,4 +1,5 @@
-"""The builder's words: handles of bodies, and methods made from the registers of joints and elements."""
+"""The builder's words: handles of bodies, and methods made from the registers of joints, elements and
+constraints."""
 
 from __future__ import annotations
 
@@ -14,11 +15,13 @@ from linegraph.vector import ZERO
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from linegraph.constraints import Constraint
     from linegraph.elements import Element
     from linegraph.model import Model
 
 Ask = ParamSpec("Ask")
 Kind = TypeVar("Kind", bound=Joint)
+Limit = TypeVar("Limit", bound="Constraint")
 
 
 @dataclass(frozen=True)
@@ -110,3 +113,18 @@ def applies(kind: Callable[Concatenate[str, Ask], Element]) -> Any:
     apply.__doc__ = kind.__doc__
     apply.__name__ = str(getattr(kind, "kind", apply.__name__))
     return apply
+
+
+def constrains(kind: Callable[Concatenate[str, tuple[str, str], Ask], Limit]) -> Any:
+    """A builder method that adds a constraint of one kind."""
+
+    def constrain(
+        self: Model, name: str, between: tuple[Terminal, Terminal], *args: Any, **options: Any
+    ) -> Limit:
+        make: Any = kind
+        constraint: Limit = make(name, (str(between[0]), str(between[1])), *args, **options)
+        return self.add_constraint(constraint)
+
+    constrain.__doc__ = kind.__doc__
+    constrain.__name__ = str(getattr(kind, "kind", constrain.__name__))
+    return constrain

@@ -5,6 +5,10 @@ across variables are the motion of the head relative to the tail; its coordinate
 what it leaves free of it. All types answer the same questions in the same order:
 
     positions   velocities   rest   resolved   alignment   motion   rates   regroup
+    restricted   measured   duals
+
+The last three say what a joint is as a *chord*, one that closes a loop: what it forbids, and what its
+coordinates are where they are none of the state.
 """
 
 from __future__ import annotations
@@ -13,6 +17,7 @@ from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
+from linegraph.errors import ModelError
 from linegraph.rotation import IDENTITY_MATRIX, Inertia, Rotation
 from linegraph.vector import ZERO, Matrix, Scalar, Vector
 
@@ -57,6 +62,62 @@ class Moments(NamedTuple):
     inertia: Inertia
 
 
+class Along(NamedTuple):
+    """A reaction force: the head's origin does not move along a direction of the tail.
+
+    ``direction . d = 0``, d from the tail's origin to the head's.
+    """
+
+    direction: Vector
+
+
+class Square(NamedTuple):
+    """A reaction torque: a direction of the head keeps its angle with one of the tail.
+
+    ``(tail . head - cosine) / sine = 0``; the torque is along ``head x tail``.
+    """
+
+    tail: Vector
+    head: Vector
+    cosine: Scalar
+    sine: Scalar
+
+
+class Upright(NamedTuple):
+    """A reaction torque about x or y, `axis` 0 or 1: the head's z leans against the tail's not about it.
+
+    The equation is the component of ``2 tan(lean / 2)``, which has no second root half a turn away.
+    """
+
+    axis: int
+
+
+class Unturned(NamedTuple):
+    """A reaction torque about `axis`, 0 to 2: the head does not turn against the tail about it.
+
+    The equation is the component of ``2 tan(angle / 2)`` along it, of the one turn from tail to head.
+    """
+
+    axis: int
+
+
+class Thread(NamedTuple):
+    """A reaction along z with its torque: an advance along z for a turn about z, ``d_z = advance angle``."""
+
+    advance: Scalar
+
+
+Restriction = Along | Square | Upright | Unturned | Thread
+"""One reaction direction of a joint: the equation its chord adds where it closes a loop."""
+
+TORQUES = (Square, Upright, Unturned)
+
+NO_SHIFT: tuple[Restriction, ...] = tuple(Along(axis) for axis in IDENTITY_MATRIX)
+NO_SHIFT_ACROSS_Z = NO_SHIFT[:2]
+NO_TURN: tuple[Restriction, ...] = (Unturned(0), Unturned(1), Unturned(2))
+NO_TURN_ACROSS_Z: tuple[Restriction, ...] = (Upright(0), Upright(1))
+
+
 @dataclass(frozen=True)
 class Joint:
     """Base of all joint types.
@@ -68,6 +129,8 @@ class Joint:
         effort: whether a force or torque along each velocity coordinate is an input.
         drive: the prescribed motion, a function of t for each coordinate, or "input" for values with
             their first two derivatives; None where the joint moves freely.
+        start: the coordinates at which the search for a position begins that closes all loops; None for
+            those of `rest`.
     """
 
     name: str
@@ -75,6 +138,7 @@ class Joint:
     axis: Vector = (0, 0, 1)
     effort: bool = True
     drive: Any = None
+    start: Any = None
 
     kind: ClassVar[str]
 
@@ -122,12 +186,50 @@ class Joint:
         """Split the head body's moments into (kept, handed to the tail body) with the same M and h."""
         return head, Moments(0, ZERO, (0, 0, 0, 0, 0, 0))
 
+    def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
+        """Its reaction directions in aligned axes: 6 less its freedoms.
+
+        Raises:
+            ModelError: they are not the same at all q, so that it cannot be a chord.
+        """
+        raise NotImplementedError
+
+    def measured(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[Scalar, ...]:
+        """The coordinates q at a relative place, in aligned axes; angles between -pi and pi.
+
+        Raises:
+            ModelError: no formula gives them.
+        """
+        who = f'joint "{self.name}"'
+        raise ModelError(who, f"{_CHORD}its coordinates are not known; {_CHOOSE}")
+
+    def duals(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[tuple[Vector, Vector], ...]:
+        """For each velocity the (torque, force) of a unit effort along it, in aligned head axes.
+
+        With (w, u) the relative twist, ``v_a = torque_a . w + force_a . u``.
+        """
+        motion = self.motion(algebra, self.rest(), (0,) * self.freedoms)
+        return tuple(zip(motion.angular, motion.linear, strict=True))
+
     def _with(self, **values: Any) -> Self:
         """A copy with other values of some fields, which are not checked again."""
         twin = copy(self)
         for name, value in values.items():
             object.__setattr__(twin, name, value)
         return twin
+
+
+_CHORD = "closes a loop, where "
+_CHOOSE = "choose a tree that has it as a branch"
+
+
+def angle_about_z(algebra: Algebra, rotation: Matrix) -> Scalar:
+    """The angle of a turn about z."""
+    return algebra.function("atan2", rotation[1][0], rotation[0][0])
 
 
 def point_apart(head: Moments) -> tuple[Moments, Moments]:

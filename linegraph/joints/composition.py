@@ -237,3 +237,45 @@ def seen(axis: Vector, axes: Matrix) -> Vector:
     """A direction resolved in the axes that are the columns of a matrix; z stays exact."""
     inward = transpose(axes)
     return (0, 0, 1) if axis == inward[2] else times(inward, axis)
+
+
+def angles_of(algebra: Algebra, sequence: str, rotation: Matrix) -> tuple[Scalar, ...]:
+    """The three angles of turns about these axes that make up a rotation.
+
+    Example:
+        >>> from linegraph.algebra import Floats
+        >>> turned = turns(Floats(), IDENTITY_MATRIX, (0.3, -0.4, 0.5), (0, 0, 0)).rotation
+        >>> [round(x, 12) for x in angles_of(Floats(), "xyz", turned.matrix())]
+        [0.3, -0.4, 0.5]
+    """
+    i, j, last = ("xyz".index(c) for c in sequence)
+    k = 3 - i - j
+    sign = 1 if (j - i) % 3 == 1 else -1
+    r = rotation
+
+    def angle(sine: Scalar, cosine: Scalar) -> Scalar:
+        return algebra.function("atan2", sine, cosine)
+
+    across = algebra.sqrt(r[i][j] * r[i][j] + _square(r[i][k] if i == last else r[i][i]))
+    if i == last:
+        middle = angle(across, r[i][i])
+        return angle(r[j][i], -sign * r[k][i]), middle, angle(r[i][j], sign * r[i][k])
+    middle = angle(sign * r[i][k], across)
+    return angle(-sign * r[j][k], r[k][k]), middle, angle(-sign * r[i][j], r[i][i])
+
+
+def _square(x: Scalar) -> Scalar:
+    return x * x
+
+
+def reciprocal(columns: Sequence[Vector]) -> tuple[Vector, ...]:
+    """Of two or three vectors in their span those with ``r_a . s_b = 1`` where a = b, else 0."""
+    if len(columns) == 2:
+        a, b = columns
+        common, aa, bb = dot(a, b), dot(a, a), dot(b, b)
+        inverse = 1 / (aa * bb - common * common)
+        first = scale(inverse, subtract(scale(bb, a), scale(common, b)))
+        return first, scale(inverse, subtract(scale(aa, b), scale(common, a)))
+    a, b, c = columns
+    inverse = 1 / dot(a, cross(b, c))
+    return tuple(scale(inverse, cross(x, y)) for x, y in ((b, c), (c, a), (a, b)))

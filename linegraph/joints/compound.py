@@ -8,7 +8,7 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Any, Self
 
 from linegraph.errors import ModelError
-from linegraph.joints.base import Joint, Motion
+from linegraph.joints.base import Joint, Motion, Restriction
 from linegraph.joints.composition import (
     chain,
     common_axes,
@@ -129,6 +129,14 @@ class Compound(Joint):
             for part, at, rates in self._shares(q, v)
             for rate in part.rates(algebra, at, rates)
         )
+
+    def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
+        """Raises `ModelError`: what it leaves free depends on how its parts stand."""
+        problem = (
+            "is compound and closes a loop; choose a tree that has it as a branch, or write its parts as "
+            "joints with massless bodies in between"
+        )
+        raise ModelError(f'joint "{self.name}"', problem)
 
     def _shares(
         self, q: tuple[Scalar, ...], v: tuple[Scalar, ...]

@@ -5,10 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linegraph.joints.base import Joint, Moments, Motion, round_apart
+from linegraph.joints.base import (
+    NO_SHIFT_ACROSS_Z,
+    NO_TURN_ACROSS_Z,
+    Joint,
+    Moments,
+    Motion,
+    Restriction,
+    angle_about_z,
+    round_apart,
+)
 from linegraph.program import Quantity
 from linegraph.rotation import Rotation, Turn, z_onto
-from linegraph.vector import ZERO, Matrix, Scalar
+from linegraph.vector import ZERO, Matrix, Scalar, Vector
 
 if TYPE_CHECKING:
     from linegraph.algebra import Algebra
@@ -60,3 +69,13 @@ class Cylindrical(Joint):
         Mass and first moment stay: their places in the tail body change with the displacement.
         """
         return round_apart(head)
+
+    def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
+        """No shift but along the axis, no turn but about it."""
+        return (*NO_SHIFT_ACROSS_Z, *NO_TURN_ACROSS_Z)
+
+    def measured(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[Scalar, ...]:
+        """The angle about z and the shift along it."""
+        return (angle_about_z(algebra, rotation), displacement[2])

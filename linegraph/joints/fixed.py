@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linegraph.joints.base import Joint, Motion
+from linegraph.joints.base import NO_SHIFT, NO_TURN, Joint, Motion, Restriction
 from linegraph.rotation import Rotation
-from linegraph.vector import ZERO, Scalar
+from linegraph.vector import ZERO, Matrix, Scalar, Vector
 
 if TYPE_CHECKING:
     from linegraph.algebra import Algebra
@@ -37,3 +37,13 @@ class Fixed(Joint):
     def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
         """No motion."""
         return Motion(Rotation(), ZERO, (), ())
+
+    def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
+        """No motion at all."""
+        return (*NO_SHIFT, *NO_TURN)
+
+    def measured(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[Scalar, ...]:
+        """There is nothing to measure."""
+        return ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linegraph.joints.base import Joint, Motion
+from linegraph.joints.base import Joint, Motion, Restriction
 from linegraph.joints.composition import compose
 from linegraph.joints.spherical import Spherical
 from linegraph.program import Quantity
@@ -91,3 +91,7 @@ class Free(Joint):
         turn = self._ball.motion(algebra, q[3:], v[3:])
         linear = turn.rotation.out((v[0], v[1], v[2]))
         return (*linear, *self._ball.rates(algebra, q[3:], v[3:]))
+
+    def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
+        """Nothing."""
+        return ()

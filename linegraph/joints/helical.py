@@ -8,15 +8,26 @@ from typing import TYPE_CHECKING, Any, Self
 
 from linegraph.checks import finite
 from linegraph.errors import ModelError
-from linegraph.joints.base import Joint, Moments, Motion, round_apart
+from linegraph.joints.base import (
+    NO_SHIFT_ACROSS_Z,
+    NO_TURN_ACROSS_Z,
+    Joint,
+    Moments,
+    Motion,
+    Restriction,
+    Thread,
+    angle_about_z,
+    round_apart,
+)
 from linegraph.program import Quantity
 from linegraph.rotation import Rotation, Turn, z_onto
+from linegraph.vector import ZERO
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from linegraph.algebra import Algebra
-    from linegraph.vector import Matrix, Scalar
+    from linegraph.vector import Matrix, Scalar, Vector
 
 
 @dataclass(frozen=True)
@@ -44,6 +55,11 @@ class Helical(Joint):
             raise ModelError(who, "has no lead; give lead=..., the advance in a full turn (m)")
         finite((self.lead,), who)
 
+    @property
+    def _advance(self) -> Scalar:
+        """Shift for a turn by 1 rad."""
+        return self.lead * (1 / math.tau)
+
     def positions(self) -> tuple[Quantity, ...]:
         """The angle."""
         return (Quantity(self.name, "rad", f"angle of helical joint {self.name}"),)
@@ -63,8 +79,8 @@ class Helical(Joint):
     def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
         """A turn about z with its share of a shift along z."""
         turn = Turn(2, algebra.cos(q[0]), algebra.sin(q[0]))
-        advance = self.lead * (1 / math.tau)
-        return Motion(Rotation((turn,)), (0, 0, advance * q[0]), ((0, 0, 1),), ((0, 0, advance),))
+        shift = (0, 0, self._advance * q[0])
+        return Motion(Rotation((turn,)), shift, ((0, 0, 1),), ((0, 0, self._advance),))
 
     def regroup(self, head: Moments) -> tuple[Moments, Moments]:
         """Hand over the part of the inertia that looks the same at every angle about the axis.
@@ -73,3 +89,19 @@ class Helical(Joint):
         causes about the axis could be traded, but not its momentum along the axis when the tail moves.
         """
         return round_apart(head)
+
+    def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
+        """No motion across the axis, and along it only as the thread has it."""
+        return (*NO_SHIFT_ACROSS_Z, *NO_TURN_ACROSS_Z, Thread(self._advance))
+
+    def measured(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[Scalar, ...]:
+        """The angle about z."""
+        return (angle_about_z(algebra, rotation),)
+
+    def duals(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[tuple[Vector, Vector], ...]:
+        """A torque about z."""
+        return (((0, 0, 1), ZERO),)

@@ -5,10 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linegraph.joints.base import Joint, Moments, Motion, round_apart
+from linegraph.joints.base import (
+    NO_SHIFT,
+    NO_TURN_ACROSS_Z,
+    Joint,
+    Moments,
+    Motion,
+    Restriction,
+    angle_about_z,
+    round_apart,
+)
 from linegraph.program import Quantity
 from linegraph.rotation import Rotation, Turn, z_onto
-from linegraph.vector import ZERO, Matrix, Scalar
+from linegraph.vector import ZERO, Matrix, Scalar, Vector
 
 if TYPE_CHECKING:
     from linegraph.algebra import Algebra
@@ -68,3 +77,13 @@ class Planar(Joint):
     def regroup(self, head: Moments) -> tuple[Moments, Moments]:
         """Hand over the part of the inertia that looks the same at every angle about the normal."""
         return round_apart(head)
+
+    def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
+        """No shift along the normal, no turn but about it."""
+        return (NO_SHIFT[2], *NO_TURN_ACROSS_Z)
+
+    def measured(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[Scalar, ...]:
+        """The place in the plane and the angle about z."""
+        return (displacement[0], displacement[1], angle_about_z(algebra, rotation))

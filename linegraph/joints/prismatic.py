@@ -5,10 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linegraph.joints.base import Joint, Moments, Motion
+from linegraph.joints.base import (
+    NO_SHIFT_ACROSS_Z,
+    NO_TURN,
+    Joint,
+    Moments,
+    Motion,
+    Restriction,
+)
 from linegraph.program import Quantity
 from linegraph.rotation import Rotation, z_onto
-from linegraph.vector import ZERO, Matrix, Scalar
+from linegraph.vector import ZERO, Matrix, Scalar, Vector
 
 if TYPE_CHECKING:
     from linegraph.algebra import Algebra
@@ -46,3 +53,13 @@ class Prismatic(Joint):
         """Hand over the inertia tensor: head and tail turn alike."""
         kept = Moments(head.mass, head.first, (0, 0, 0, 0, 0, 0))
         return kept, Moments(0, ZERO, head.inertia)
+
+    def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
+        """No shift but along the axis, no turn."""
+        return (*NO_SHIFT_ACROSS_Z, *NO_TURN)
+
+    def measured(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[Scalar, ...]:
+        """The shift along z."""
+        return (displacement[2],)

@@ -5,10 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linegraph.joints.base import Joint, Moments, Motion
+from linegraph.joints.base import (
+    NO_SHIFT,
+    NO_TURN_ACROSS_Z,
+    Joint,
+    Moments,
+    Motion,
+    Restriction,
+    angle_about_z,
+)
 from linegraph.program import Quantity
 from linegraph.rotation import Rotation, Turn, z_onto
-from linegraph.vector import ZERO, Matrix, Scalar
+from linegraph.vector import ZERO, Matrix, Scalar, Vector
 
 if TYPE_CHECKING:
     from linegraph.algebra import Algebra
@@ -53,3 +61,13 @@ class Revolute(Joint):
         xx, xy, xz, yy, yz, zz = head.inertia
         kept = Moments(0, (x, y, 0), (xx - yy, xy, xz, 0, yz, zz))
         return kept, Moments(head.mass, (0, 0, z), (yy, 0, 0, yy, 0, 0))
+
+    def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
+        """No shift, no turn but about the axis."""
+        return (*NO_SHIFT, *NO_TURN_ACROSS_Z)
+
+    def measured(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[Scalar, ...]:
+        """The angle about z."""
+        return (angle_about_z(algebra, rotation),)

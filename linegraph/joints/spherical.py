@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from linegraph.errors import ModelError
-from linegraph.joints.base import Joint, Moments, Motion, point_apart
-from linegraph.joints.composition import turns
+from linegraph.joints.base import NO_SHIFT, Joint, Moments, Motion, Restriction, point_apart
+from linegraph.joints.composition import angles_of, reciprocal, turns
 from linegraph.program import Quantity
 from linegraph.rotation import IDENTITY_MATRIX, Full, Rotation, from_quaternion
-from linegraph.vector import ZERO, Scalar
+from linegraph.vector import ZERO, Matrix, Scalar, Vector
 
 if TYPE_CHECKING:
     from linegraph.algebra import Algebra
@@ -115,3 +115,25 @@ class Spherical(Joint):
     def regroup(self, head: Moments) -> tuple[Moments, Moments]:
         """Hand over the mass as a point: the joint's centre belongs to both bodies."""
         return point_apart(head)
+
+    def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
+        """No shift."""
+        return NO_SHIFT
+
+    def measured(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[Scalar, ...]:
+        """The angles; of a quaternion, whose sign is open, there is no formula."""
+        if self.angles is None:
+            return super().measured(algebra, rotation, displacement)
+        return angles_of(algebra, self.angles, rotation)
+
+    def duals(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[tuple[Vector, Vector], ...]:
+        """Torques about head axes, or about the axes of the angles."""
+        if self.angles is None:
+            return super().duals(algebra, rotation, displacement)
+        q = self.measured(algebra, rotation, displacement)
+        columns = self.motion(algebra, q, (0, 0, 0)).angular
+        return tuple((s, ZERO) for s in reciprocal(columns))

@@ -7,9 +7,25 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
 
 from linegraph.errors import ModelError
-from linegraph.joints.base import Joint, Moments, Motion, point_apart
-from linegraph.joints.composition import common_axes, direction, parallel, seen, turns
+from linegraph.joints.base import (
+    NO_SHIFT,
+    Joint,
+    Moments,
+    Motion,
+    Restriction,
+    Square,
+    point_apart,
+)
+from linegraph.joints.composition import (
+    common_axes,
+    direction,
+    parallel,
+    reciprocal,
+    seen,
+    turns,
+)
 from linegraph.program import Quantity
+from linegraph.vector import ZERO, cross, dot, scale, subtract, times, transpose
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -85,3 +101,35 @@ class Universal(Joint):
         Nothing more: the second axis, about which a hinge would, moves against the tail.
         """
         return point_apart(head)
+
+    def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
+        """No shift, no turn about the common normal of the axes."""
+        axes = self.alignment()
+        first, second = (seen(axis, axes) for axis in self._directions)
+        normal = cross(first, second)
+        sine = algebra.sqrt(dot(normal, normal))
+        return (*NO_SHIFT, Square(first, second, dot(first, second), sine))
+
+    def measured(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[Scalar, ...]:
+        """The angles: of the second axis about the first in the tail, of the first about it in the head."""
+        axes = self.alignment()
+        first, second = (seen(axis, axes) for axis in self._directions)
+        moved, back = times(rotation, second), times(transpose(rotation), first)
+        angle = _angle_between(algebra, second, moved, first)
+        return (angle, _angle_between(algebra, back, first, second))
+
+    def duals(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[tuple[Vector, Vector], ...]:
+        """Torques that do work along one axis only."""
+        q = self.measured(algebra, rotation, displacement)
+        columns = self.motion(algebra, q, (0, 0)).angular
+        return tuple((s, ZERO) for s in reciprocal(columns))
+
+
+def _angle_between(algebra: Algebra, a: Vector, b: Vector, axis: Vector) -> Scalar:
+    """The angle from `a` to `b` as seen along a unit vector."""
+    flat = subtract(a, scale(dot(axis, a), axis))
+    return algebra.function("atan2", dot(axis, cross(flat, b)), dot(flat, b))

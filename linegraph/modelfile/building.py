@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from linegraph.body import GROUND
+from linegraph.constraints import CONSTRAINTS
 from linegraph.elements import ELEMENTS
 from linegraph.joints import JOINTS
 from linegraph.model import Model
@@ -12,8 +13,21 @@ from linegraph.modelfile.expressions import Names
 from linegraph.modelfile.kinds import WRONG, said
 from linegraph.modelfile.names import name_problem
 from linegraph.modelfile.report import Report, Spot, shown
-from linegraph.modelfile.symbols import read_inputs, read_parameters, rotation_value
-from linegraph.modelfile.tables import BASEMENT, FLAT, GRAVITY, HEAD, TYPES, freedoms_of
+from linegraph.modelfile.symbols import (
+    read_inputs,
+    read_outputs,
+    read_parameters,
+    rotation_value,
+)
+from linegraph.modelfile.tables import (
+    BASEMENT,
+    FLAT,
+    FORMULATION,
+    GRAVITY,
+    HEAD,
+    TYPES,
+    freedoms_of,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,7 +36,7 @@ if TYPE_CHECKING:
     from linegraph.modelfile.document import Document
     from linegraph.words import BodyHandle
 
-SHARED = {*JOINTS, *ELEMENTS, "load"}
+SHARED = {*JOINTS, *ELEMENTS, "load", *CONSTRAINTS, "relation"}
 """Types whose names must differ from each other: each names an edge."""
 
 THINGS = {**dict.fromkeys(JOINTS, "joint"), "frame": "frame"}
@@ -92,8 +106,12 @@ class _Builder:
         self._joints()
         for kind, name in self._tables(*ELEMENTS, "load"):
             self._element(kind, name)
+        for kind, name in self._tables(*CONSTRAINTS, "relation"):
+            self._element(kind, name)
         for kind, name in self._tables("rotor"):
             self._rotor(kind, name)
+        self._formulation()
+        read_outputs(self._data.get("outputs", {}), self._spot("outputs"), self._names, self._model)
         return self._model
 
     def _spot(self, *path: str) -> Spot:
@@ -142,7 +160,7 @@ class _Builder:
             label = f"{GROUND}.{name}" if kind == "frame" else name
             line = self._report.line((kind, name))
             self._model.places.setdefault(f'{thing} "{label}"', line or 1)
-        for key, thing in (("parameters", "parameter"), ("inputs", "input")):
+        for key, thing in (("parameters", "parameter"), ("inputs", "input"), ("outputs", "output")):
             for _, name in self._tables(key):
                 self._model.places[f'{thing} "{name}"'] = self._report.line((key, name)) or 1
         terminals = self._names.terminals
@@ -160,6 +178,8 @@ class _Builder:
                 terminals[f"{name}.{frame}"] = name
         for kind, name in self._tables(*JOINTS):
             self._names.joints[name] = freedoms_of(kind)
+        self._names.elements = {name for _, name in self._tables(*ELEMENTS)}
+        self._names.constraints = {name for _, name in self._tables(*CONSTRAINTS)}
 
     def _check_name(self, kind: str, name: str, owners: dict[str, str]) -> None:
         spot = self._spot(kind, name)
@@ -169,7 +189,7 @@ class _Builder:
         elif kind in SHARED:
             if name in owners:
                 first = f"[{owners[name]}.{name}] in line {self._report.line((owners[name], name))}"
-                spot.error(f"the name is taken by {first}; joints and elements share their names")
+                spot.error(f"the name is taken by {first}; joints, elements and constraints share their names")
                 self._refused.add((kind, name))
             owners.setdefault(name, kind)
 
@@ -182,6 +202,20 @@ class _Builder:
             found = GRAVITY.read(self._data["gravity"], self._spot("gravity"), self._names)
             if found is not WRONG:
                 self._model.gravity = found["acceleration"]
+
+    def _formulation(self) -> None:
+        given = self._data.get("formulation")
+        if not isinstance(given, dict):
+            return
+        found = FORMULATION.read(given, self._spot("formulation"), self._names)
+        if found is WRONG:
+            return
+        line = self._report.line(("formulation",)) or 1
+        things = [f'branch "{name}"' for name in found.get("tree", ())]
+        self._model.places |= dict.fromkeys(["formulation", *things], line)
+        if isinstance(found.get("coordinates"), dict):
+            found["of_body"] = found.pop("coordinates")
+        self._model.formulation(**found)
 
     def _basement(self) -> None:
         if isinstance(self._data.get("basement"), dict):

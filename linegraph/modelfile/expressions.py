@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.algebra import Floats
 from linegraph.errors import ModelError
-from linegraph.formula import CONSTANTS, parse
+from linegraph.formula import CONSTANTS, parse, variable_of
 from linegraph.functions import ARITY
 
 if TYPE_CHECKING:
@@ -27,7 +27,8 @@ class Scope(IntEnum):
     PARAMETERS = 1
     TIME = 2
     STATE = 3
-    LAW = 4
+    OUTPUT = 4
+    LAW = 5
 
 
 ALLOWED = {
@@ -35,6 +36,8 @@ ALLOWED = {
     Scope.PARAMETERS: "only numbers and parameters may stand here",
     Scope.TIME: "only numbers, parameters and the time t may stand here",
     Scope.STATE: "numbers, parameters, t, inputs, coordinates and their rates der(...) may stand here",
+    Scope.OUTPUT: "variables of edges, numbers, parameters, t, inputs, coordinates and their rates may "
+    "stand here",
     Scope.LAW: "x, v, numbers, parameters, t, inputs, coordinates and their rates may stand here",
 }
 
@@ -53,6 +56,8 @@ class Names:
         several: joints with several coordinates, and these.
         terminals: bodies and frames, with the body each is of.
         joints: every joint of the file and how many freedoms it has; None while that is not known.
+        elements: the force elements.
+        constraints: the constraints with edges.
         incomplete: a joint is wrong, so that not all coordinates are known.
     """
 
@@ -62,6 +67,8 @@ class Names:
     several: dict[str, list[str]] = field(default_factory=dict)
     terminals: dict[str, str] = field(default_factory=dict)
     joints: dict[str, int | None] = field(default_factory=dict)
+    elements: set[str] = field(default_factory=set)
+    constraints: set[str] = field(default_factory=set)
     incomplete: bool = False
 
     def known(self, scope: Scope) -> list[str]:
@@ -95,6 +102,9 @@ def read_expression(text: str, scope: Scope, spot: Spot, names: Names) -> Formul
 
 def _problem(name: str, scope: Scope, spot: Spot, names: Names) -> str:
     """Why a name cannot stand in an expression; empty if it can."""
+    variable = variable_of(name)
+    if variable is not None:
+        return _variable_problem(variable, scope, spot, names)
     inner = name[4:-1] if name.startswith("der(") else name
     rate = inner != name
     if rate and scope >= Scope.STATE:
@@ -113,6 +123,25 @@ def _problem(name: str, scope: Scope, spot: Spot, names: Names) -> str:
         return ""
     hint = _several(name, names) or spot.report.hint(name, names.known(scope))
     return f'there is no "{name}"{hint}'
+
+
+def _variable_problem(
+    variable: tuple[str, str, str], scope: Scope, spot: Spot, names: Names
+) -> str:
+    """Why a variable of an edge or a point cannot stand in an expression."""
+    kind, thing, _ = variable
+    if scope != Scope.OUTPUT:
+        return f"{kind}({thing}) can stand in [outputs] only"
+    if kind in ("across", "through"):
+        known, what = set(names.elements), "force element"
+    elif kind in ("force", "torque"):
+        known, what = {*names.joints, *names.constraints}, "joint or constraint"
+    else:
+        bodies = {f"{body}.mass_center" for body in names.terminals.values()}
+        known, what = {*names.terminals, *bodies}, "body or frame"
+    if thing in known:
+        return ""
+    return f'{kind}: there is no {what} "{thing}"{spot.report.hint(thing, sorted(known))}'
 
 
 def _several(name: str, names: Names) -> str:

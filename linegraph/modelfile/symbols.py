@@ -9,7 +9,7 @@ from linegraph.formula import parse
 from linegraph.modelfile.expressions import Names, value_of
 from linegraph.modelfile.kinds import WRONG, said
 from linegraph.modelfile.names import symbol_problem
-from linegraph.modelfile.tables import INPUT, PARAMETER
+from linegraph.modelfile.tables import INPUT, OUTPUT, PARAMETER
 
 if TYPE_CHECKING:
     from linegraph.model import Model
@@ -118,6 +118,22 @@ def read_inputs(tables: Any, spot: Spot, names: Names, model: Model) -> None:
             if found is not WRONG:
                 model.input(name, **found)
         names.inputs.add(name)
+
+
+def read_outputs(tables: Any, spot: Spot, names: Names, model: Model) -> None:
+    """Note what the emitted code is to return by name."""
+    if not isinstance(tables, dict):
+        return
+    for name, given in tables.items():
+        place = spot.at(name)
+        problem = symbol_problem(name)
+        if problem:
+            place.error(problem)
+            continue
+        table = given if isinstance(given, dict) else {"value": given}
+        found = OUTPUT.read(table, place, names)
+        if found is not WRONG:
+            model.output(name, **found)
 
 
 def rotation_value(value: Any) -> Any:

@@ -7,9 +7,11 @@ new one is in the language at once. `Law` fields see x and v; all others see wha
 from __future__ import annotations
 
 import re
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import MISSING, dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
+from linegraph.choices import COORDINATES, REACTION_AXES
+from linegraph.constraints import CONSTRAINTS, Constraint
 from linegraph.elements import ELEMENTS, Element
 from linegraph.elements.load import BODY, WORLD
 from linegraph.joints import JOINTS, Joint
@@ -172,6 +174,70 @@ class Turning:
         return {"anyOf": [{"const": BY_INPUT}, TURNING.schema()]}
 
 
+@dataclass(frozen=True)
+class Start:
+    """Where the search for a position begins: a number, or one for each coordinate."""
+
+    def read(self, value: Any, spot: Spot, names: Names) -> Any:
+        """A number or a tuple."""
+        if not isinstance(value, list):
+            return Number().read(value, spot, names)
+        count = len(value) if 1 <= len(value) <= MOST_COORDINATES else 1
+        return Items(Number(), count, "one number for each coordinate").read(value, spot, names)
+
+    def schema(self) -> Schema:
+        """A number, a text or a list."""
+        items = Items(Number(), 1, "").schema()
+        return {"anyOf": [*Number().schema()["anyOf"], items | {"maxItems": MOST_COORDINATES}]}
+
+
+@dataclass(frozen=True)
+class Listed:
+    """A list of names of any length.
+
+    Attributes:
+        what: what they name.
+    """
+
+    what: str
+
+    def read(self, value: Any, spot: Spot, names: Names) -> Any:
+        """A tuple; whether the names exist is asked when the tree is chosen."""
+        if not isinstance(value, list) or not all(isinstance(x, str) for x in value):
+            spot.error(f"a list of {self.what} is wanted, not {said(value)}")
+            return WRONG
+        return tuple(value)
+
+    def schema(self) -> Schema:
+        """An array of strings."""
+        return {"type": "array", "items": {"type": "string"}}
+
+
+@dataclass(frozen=True)
+class Coordinates:
+    """One kind of coordinates for all bodies, or kinds for single bodies."""
+
+    def read(self, value: Any, spot: Spot, names: Names) -> Any:
+        """The word, or words by body."""
+        word = Word(COORDINATES)
+        if not isinstance(value, dict):
+            return word.read(value, spot, names)
+        bodies = set(names.terminals.values()) - {"ground"}
+        before = spot.report.count
+        for body, kind in value.items():
+            if body not in bodies:
+                hint = spot.report.hint(body, sorted(bodies))
+                spot.at(body).error(f'there is no body "{shown(body)}"{hint}')
+            else:
+                word.read(kind, spot.at(body), names)
+        return WRONG if spot.report.count > before else dict(value)
+
+    def schema(self) -> Schema:
+        """A word, or an object of words."""
+        word = Word(COORDINATES).schema()
+        return {"anyOf": [word, {"type": "object", "additionalProperties": word}]}
+
+
 INERTIA = Table(
     {
         key: Field(Number(least=0 if key[0] == key[1] else None), f"entry {key} (kg m^2)")
@@ -258,6 +324,30 @@ ROTOR = Table(
         "ratio": Field(Number(), "turns of the rotor for one of the joint; 1 if left out"),
     }
 )
+RELATION = Table(
+    {"rate": Field(Number(Scope.STATE), "an expression that is zero, linear in the rates der(...)", True)},
+    about="a constraint on velocities: a(q) v = b(q, t)",
+)
+OUTPUT = Table(
+    {"value": Field(Number(Scope.OUTPUT), "an expression", True), "unit": _UNIT, "about": _ABOUT}
+)
+FORMULATION = Table(
+    {
+        "tree": Field(Listed("joints, or inertia edges body/inertia,"), "edges that must be branches"),
+        "coordinates": Field(
+            Coordinates(), '"joint" (default), "absolute" or "absolute-angle"; or one for each body named'
+        ),
+        "independent": Field(
+            Listed("coordinates"), "what a closed mechanism is reduced to; chosen automatically if left out"
+        ),
+        "baumgarte": Field(
+            Items(Number(), 2, "a list [alpha, beta]"),
+            "stabilises constraints in forward_dynamics: -2 alpha rate - beta^2 error (1/s)",
+        ),
+        "reactions": Field(Word(REACTION_AXES), 'axes of reactions: "head" (default), "tail" or "ground"'),
+    },
+    about="choices of the formulation: none of them changes the physics",
+)
 HEAD = {
     "name": Field(Label(), "prefix of everything emitted; the file's own name if left out"),
     "description": Field(Text(2000, lines=True), "one paragraph for the head of emitted files"),
@@ -277,6 +367,7 @@ def _abouts(kind: type) -> dict[str, str]:
 _KINDS: Mapping[str, Kind] = {
     "Any": Number(),
     "Vector": vector(),
+    "Vector | None": Direction(),
     "bool": Flag(),
     "str": Text(),
     "str | None": Text(),
@@ -325,6 +416,9 @@ def joint_table(name: str) -> Table:
             "effort": Field(Flag(), "whether a force or torque along each velocity is an input"),
             "motion": Field(Motion(), 'prescribed: expressions of t, or "input"'),
         }
+        entries["start"] = Field(
+            Start(), "where the search for a position that closes all loops begins; 0 if left out"
+        )
     if freedoms in (1, None):
         entries["follows"] = Field(FOLLOWS, "the joint it is coupled to")
     about = (kind.__doc__ or "").strip().split("\n")[0]
@@ -357,12 +451,26 @@ def element_table(name: str) -> Table:
     return Table(places | own, (*groups, *kind.needs), groups, about)
 
 
+def constraint_table(name: str) -> Table:
+    """The table of a constraint type."""
+    kind = CONSTRAINTS[name]
+    own = {
+        key: replace(entry, kind=Timed()) if key in kind.timed else entry
+        for key, entry in _own(kind, Constraint).items()
+    }
+    about = (kind.__doc__ or "").strip().split("\n")[0]
+    ends = {"between": Field(Ends(), "[tail, head]: body or body.frame", True)}
+    return Table(ends | own, kind.needs, (), about)
+
+
 TYPES: Mapping[str, Table] = {
     "body": BODY_TABLE,
     "frame": FRAME,
     **{name: joint_table(name) for name in JOINTS},
     **{name: element_table(name) for name in ELEMENTS},
     "load": LOAD,
+    **{name: constraint_table(name) for name in CONSTRAINTS},
+    "relation": RELATION,
     "rotor": ROTOR,
 }
 """The tables ``[type.name]``."""
@@ -372,5 +480,7 @@ FLAT: Mapping[str, Table | None] = {
     "inputs": None,
     "gravity": GRAVITY,
     "basement": BASEMENT,
+    "formulation": FORMULATION,
+    "outputs": None,
 }
 """The tables ``[table]``; None for those with names of the user's own."""

@@ -1,0 +1,88 @@
+"""Bodies of functions that iterate or decide as they run: templates of algorithms, one for each language.
+
+A template says the algorithm; what it needs to know of a module are sizes, places and how to call the
+module's other functions.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from codegen import layout, templates
+from linegraph.program import Routine
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from linegraph.program import Module
+
+HELPERS = {
+    "constrained_dynamics": ("eliminate", "constrained"),
+    "project": ("eliminate", "constrained", "unit"),
+    "complete": ("eliminate", "determined", "unit"),
+    "reduction": ("eliminate", "determined"),
+    "reduced_equations": (),
+}
+"""The algorithms, and what they share."""
+
+
+def helpers(module: Module) -> list[str]:
+    """What the algorithms of a module share, in an order in which each knows those it uses."""
+    used = [x for p in module.programs if isinstance(p, Routine) for x in HELPERS[p.algorithm]]
+    return list(dict.fromkeys(used))
+
+
+def quaternions(module: Module) -> tuple[int, ...]:
+    """Where quaternions begin among the coordinates, as far as routines need to know."""
+    return _detail(module, "quaternions")
+
+
+def independent(module: Module) -> tuple[int, ...]:
+    """Where the independent velocities are among all."""
+    return _detail(module, "w_at")
+
+
+def _detail(module: Module, name: str) -> tuple[int, ...]:
+    found = [dict(p.details)[name] for p in module.programs if isinstance(p, Routine)]
+    return tuple(found[0]) if found else ()
+
+
+def body(
+    module: Module,
+    routine: Routine,
+    language: str,
+    prefix: str,
+    quote: Callable[[str], str] = str,
+) -> list[str]:
+    """The lines of a routine's body; `quote` writes what a status means as a string."""
+    counts = layout.counts(module)
+    text = templates.fill(
+        f"{language}/routines/{routine.algorithm}.jinja",
+        counts={"NP": 0, "NI": 0, **counts},
+        macro=module.name.upper(),
+        call=_calling(module, routine, prefix),
+        texts={status: quote(about) for status, about in routine.statuses},
+        **dict(routine.details),
+    )
+    lines = text.rstrip("\n").split("\n")
+    if language == "c":
+        names = (argument.name for argument in routine.arguments)
+        lines[:0] = [f"    (void){x};" for x in names if not re.search(rf"\b{x}\b", text)]
+    return lines
+
+
+def _calling(module: Module, routine: Routine, prefix: str) -> Callable[..., str]:
+    """How a template calls another function: ``call("bias", "h", v="v_on")`` gives ``arm_bias(p, q, v_on, h)``.
+
+    The first names are those of the results; arguments have their own names unless renamed.
+    """
+    programs = {program.name: program for program in module.programs}
+
+    def call(name: str, *results: str, **renamed: str) -> str:
+        if name not in routine.uses:
+            raise ValueError(f"{routine.name} does not say that it calls {name}")
+        given = [renamed.get(x.name, x.name) for x in programs[name].arguments]
+        return f"{prefix}{name}({', '.join([*given, *results])})"
+
+    return call

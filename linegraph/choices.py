@@ -1,0 +1,39 @@
+"""What a user may choose of the formulation: the tree, the coordinates, and how results are shown."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+JOINT, ABSOLUTE, ABSOLUTE_ANGLE = COORDINATES = ("joint", "absolute", "absolute-angle")
+"""Which edges carry a body's coordinates: its joint, its inertia edge, or its joint for the place and its
+inertia edge for the orientation."""
+
+HEAD, TAIL, GROUND_AXES = REACTION_AXES = ("head", "tail", "ground")
+"""The axes in which joint reactions are resolved."""
+
+
+@dataclass(frozen=True)
+class Choices:
+    """The user's wishes; what is left open is chosen automatically.
+
+    Attributes:
+        tree: edges that must be branches: joints by name, inertia edges as ``body/inertia``.
+        coordinates: for all bodies, one of `COORDINATES`.
+        of_body: for single bodies.
+        independent: the coordinates that a closed mechanism is reduced to; None for an automatic choice.
+        baumgarte: (alpha, beta) of ``φ̈ + 2 alpha φ̇ + beta² φ = 0`` (1/s) in forward dynamics; None for φ̈ = 0.
+        reactions: one of `REACTION_AXES`.
+    """
+
+    tree: tuple[str, ...] = ()
+    coordinates: str = JOINT
+    of_body: Mapping[str, str] = field(default_factory=dict)
+    independent: tuple[str, ...] | None = None
+    baumgarte: tuple[Any, Any] | None = None
+    reactions: str = HEAD
+
+    def kind(self, body: str) -> str:
+        """Which of `COORDINATES` a body has."""
+        return self.of_body.get(body, self.coordinates)

@@ -1,0 +1,329 @@
+"""Emitted functions of systems with constraints: φ, J, γ, and what solves for motion and multipliers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linegraph.errors import ModelError
+from linegraph.parameters import resolver
+from linegraph.program import Argument, Listing, Program, Quantity, Result, Routine
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from linegraph.assembly import Assembly
+    from linegraph.programs import Functions
+    from linegraph.vector import Scalar
+
+SINGULAR = (1, "the position is singular: more motions are free here than elsewhere")
+NO_INERTIA = (2, "the mass matrix is singular on the motions that the constraints allow")
+CONTRADICTION = (3, "the constraints contradict each other")
+NOT_CLOSED = (1, "no position that satisfies the constraints was found")
+NOT_DETERMINED = (2, "the independent coordinates do not determine the others here")
+
+
+def constraints(f: Functions) -> tuple[Program | Routine, ...]:
+    """φ, J, J v - b, γ, and everything at once."""
+    if not f.tree.closed:
+        return ()
+    programs: list[Program | Routine] = []
+    if _positions(f):
+        about = "Constraints phi(q), zero where all loops are closed."
+        programs.append(f.program("constraints", about, ("q",), (_phi(f),)))
+    programs += [
+        f.program(
+            "constraint_jacobian",
+            "Jacobian J of the constraints: J v is what they fix.",
+            ("q",),
+            (_jacobian(f),),
+        ),
+        f.program(
+            "constraint_rates",
+            "Rates J v - b of the constraints, zero where v is allowed.",
+            ("q", "v"),
+            (_column("rates", f.chords.rates(f.v), "rates of the constraints"),),
+        ),
+        f.program(
+            "constraint_bias",
+            "Right-hand side gam of the constraints of acceleration, J vdot = gam.",
+            ("q", "v"),
+            (_column("gam", f.chords.bias(), "what J vdot must be"),),
+        ),
+        _whole(f),
+    ]
+    return tuple(programs)
+
+
+def _whole(f: Functions) -> Program:
+    force = [effort - h for effort, h in zip(f.efforts, f.bias.entries, strict=True)]
+    about = (
+        "All of M vdot = f + J^T lam, J vdot = gam, sharing work: M, f = Q(u) - h, J and gam"
+        f"{', stabilised by Baumgarte' * (f.model.choices.baumgarte is not None)}."
+    )
+    results = (
+        f.mass_matrix,
+        _column("f", force, "generalised forces Q - h"),
+        _jacobian(f),
+        _column("gam", _stabilised(f), "what J vdot must be"),
+    )
+    return f.program("constrained_equations", about, ("q", "v"), results)
+
+
+def forward_dynamics(f: Functions) -> tuple[Program | Routine, ...]:
+    """v̇ and λ, by elimination of J with complete pivoting: redundant constraints drop out."""
+    results = (
+        Result("a", (len(f.v),), (), "accelerations, the derivatives of v"),
+        Result("lam", (len(f.equations),), (), "multipliers; where not unique, those of least norm"),
+    )
+    about = (
+        "Forward dynamics with constraints: M a + h = Q(u) + J^T lam, J a = gam."
+        f"{_baumgarte_text(f)}"
+    )
+    statuses = (SINGULAR, NO_INERTIA, CONTRADICTION)
+    return (
+        _routine(
+            f,
+            "forward_dynamics",
+            about,
+            ("q", "v", "u"),
+            results,
+            "constrained_dynamics",
+            statuses,
+            ("constrained_equations",),
+        ),
+    )
+
+
+def project(f: Functions) -> tuple[Program | Routine, ...]:
+    """q and v onto the constraints."""
+    if not f.tree.closed:
+        return ()
+    results = (
+        Result("q_on", (len(f.q),), (), "coordinates that satisfy the constraints"),
+        Result("v_on", (len(f.v),), (), "velocities that satisfy them"),
+    )
+    about = (
+        "Bring q and v onto the constraints by Newton's method, along the directions that take the least "
+        "kinetic energy; quaternions get length 1."
+    )
+    calls = ("mass_matrix", *_phi_calls(f), "constraint_jacobian", "constraint_rates")
+    return (
+        _routine(
+            f,
+            "project",
+            about,
+            ("q", "v"),
+            results,
+            "project",
+            (NOT_CLOSED, SINGULAR[:0] or (2, "the constraints of velocity contradict each other")),
+            (*calls, "coordinate_rates"),
+        ),
+    )
+
+
+def reduction(f: Functions) -> tuple[Program | Routine, ...]:
+    """The mechanism in its independent coordinates alone."""
+    chosen = independent(f) if f.tree.closed else None
+    if not chosen:
+        return ()
+    n, k = len(f.v), len(chosen)
+    guess = "q, a guess of all coordinates near the position wanted, "
+    complete = _routine(
+        f,
+        "complete",
+        f"All of q and v from the independent coordinates s and their rates w: Newton from {guess}"
+        "which decides between several ways to assemble.",
+        ("q", "s", "w"),
+        (
+            Result("q_on", (len(f.q),), (), "coordinates"),
+            Result("v_on", (n,), (), "velocities"),
+        ),
+        "complete",
+        (NOT_CLOSED, NOT_DETERMINED),
+        (*_phi_calls(f), "constraint_jacobian", "constraint_rates", "coordinate_rates"),
+    )
+    tangent = _routine(
+        f,
+        "reduction",
+        "Velocities and accelerations from the independent ones: v = T w (+ what is prescribed), "
+        "vdot = T wdot + c.",
+        ("q", "v"),
+        (Result("T", (n, k), (), "all velocities for unit w"), Result("c", (n,), (), "vdot at wdot = 0")),
+        "reduction",
+        (NOT_DETERMINED,),
+        ("constraint_jacobian", "constraint_bias"),
+    )
+    reduced = _routine(
+        f,
+        "reduced_equations",
+        "Equations of motion in the independent coordinates, Mr wdot + hr = T^T Q: Mr = T^T M T, "
+        "hr = T^T (h + M c).",
+        ("q", "v"),
+        (Result("Mr", (k, k), (), "reduced mass matrix"), Result("hr", (k,), (), "reduced bias")),
+        "reduced_equations",
+        (NOT_DETERMINED,),
+        ("equations", "reduction"),
+    )
+    return complete, tangent, reduced
+
+
+def _phi_calls(f: Functions) -> tuple[str, ...]:
+    return ("constraints",) if _positions(f) else ()
+
+
+def independent(f: Functions) -> list[tuple[int, int]]:
+    """(position, velocity) of each independent coordinate, as chosen or as the assembly found them.
+
+    Raises:
+        ModelError: a chosen one does not exist, or is none whose rate is its velocity.
+    """
+    wanted = f.model.choices.independent
+    pairs = _plain_pairs(f)
+    if wanted is None:
+        found = assembly(f).independent
+        chosen = [(pairs[v], v) for v in found if v in pairs]
+        return chosen if len(chosen) == assembly(f).freedoms else []
+    names = {quantity.name: k for k, quantity in enumerate(f.tree.velocities)}
+    for name in wanted:
+        if name not in names or names[name] not in pairs:
+            known = ", ".join(n for n, k in names.items() if k in pairs)
+            problem = f'independent: "{name}" is no coordinate of this tree with its rate as velocity; known: {known}'
+            raise ModelError("formulation", problem)
+    if len(wanted) != assembly(f).freedoms:
+        problem = f"independent: {len(wanted)} coordinates for {assembly(f).freedoms} degrees of freedom"
+        raise ModelError("formulation", problem)
+    return [(pairs[names[name]], names[name]) for name in wanted]
+
+
+def _plain_pairs(f: Functions) -> dict[int, int]:
+    """The position of each velocity that is its derivative."""
+    return {
+        v.index: q.index
+        for link in f.tree.links
+        if len(link.place.positions) == len(link.velocities) and link.joint.kind != "planar"
+        for q, v in zip(link.place.positions, link.velocities, strict=True)
+        if q.ratio == 1 and q.offset == 0
+    }
+
+
+def assembly(f: Functions) -> Assembly:
+    """What the constraints are worth: found once for all functions."""
+    return f.derivation.assembled
+
+
+def listings(f: Functions) -> tuple[Listing, ...]:
+    """Constraints with their multipliers, and the independent coordinates."""
+    unique = assembly(f).unique
+    multipliers = tuple(
+        Quantity(e.multiplier.name, e.multiplier.unit, e.multiplier.about + "; not unique" * (not one))
+        for e, one in zip(f.equations, unique, strict=True)
+    )
+    chosen = tuple(f.tree.velocities[v] for _, v in independent(f))
+    heading = "constraints, those of position first, and of their multipliers"
+    return (
+        Listing("constraint", "NC", heading, multipliers, ("lam", "gam", "rates")),
+        Listing("independent", "NI", "independent velocities", chosen, ("w",)),
+    )
+
+
+def counts(f: Functions) -> tuple[tuple[str, int], ...]:
+    """How many constraints are of position, and how many are independent."""
+    return (("NP", _positions(f)), ("RANK", assembly(f).rank))
+
+
+def remarks(f: Functions) -> tuple[str, ...]:
+    """What the head of a file says of a closed system."""
+    if not f.tree.closed:
+        return ()
+    found = assembly(f)
+    cut = ", ".join(dict.fromkeys(e.component for e in f.equations))
+    text = (
+        f"{len(f.equations)} constraints come from the chords of the tree ({cut}); {found.rank} are "
+        f"independent, so there are {found.freedoms} degrees of freedom."
+    )
+    if found.redundant:
+        names = [e.multiplier.name for e, one in zip(f.equations, found.unique, strict=True) if not one]
+        text += (
+            f" {found.redundant} are redundant: the motion is the same without them, but these multipliers, "
+            f"and the reactions that depend on them, are not unique: {', '.join(names)}."
+        )
+    return (text,)
+
+
+def _routine(
+    f: Functions,
+    name: str,
+    about: str,
+    arguments: tuple[str, ...],
+    results: tuple[Result, ...],
+    algorithm: str,
+    statuses: tuple[tuple[int, str], ...],
+    calls: tuple[str, ...],
+) -> Routine:
+    """A routine; it takes the inputs too where what it calls does."""
+    if f.driven_constraints and "u" not in arguments:
+        place = sum(argument in ("q", "v", "s", "w") for argument in arguments)
+        arguments = (*arguments[:place], "u", *arguments[place:])
+    chosen = independent(f)
+    sizes = {**f.sizes, "s": len(chosen), "w": len(chosen)}
+    texts = {"s": "independent coordinates", "w": "their rates"}
+    given = tuple(
+        Argument(argument, sizes.get(argument), texts.get(argument) or f.texts[argument])
+        for argument in (*f.head, *arguments)
+    )
+    details = (
+        ("quaternions", _quaternions(f)),
+        ("position_rank", assembly(f).position_rank),
+        ("s_at", tuple(q for q, _ in chosen)),
+        ("w_at", tuple(v for _, v in chosen)),
+    )
+    return Routine(name, about, given, results, algorithm, statuses, calls, details)
+
+
+def _quaternions(f: Functions) -> tuple[int, ...]:
+    """Where quaternions begin in q."""
+    return tuple(
+        link.place.positions[-4].index
+        for link in f.tree.links
+        if len(link.place.positions) > len(link.velocities)
+    )
+
+
+def _positions(f: Functions) -> int:
+    return sum(equation.holonomic for equation in f.equations)
+
+
+def _phi(f: Functions) -> Result:
+    return _column("phi", f.chords.position(), "constraints of position")
+
+
+def _jacobian(f: Functions) -> Result:
+    rows = f.jacobian
+    entries = tuple(entry for row in rows for entry in row)
+    return Result("J", (len(rows), len(f.v)), entries, "Jacobian of the constraints")
+
+
+def _stabilised(f: Functions) -> list[Scalar]:
+    """γ, less what brings errors of position and velocity back: 2 alpha (J v - b) + beta² φ."""
+    bias = f.chords.bias()
+    if f.model.choices.baumgarte is None:
+        return bias
+    resolve = resolver(f.dag, f.values)
+    alpha, beta = (resolve(x) for x in f.model.choices.baumgarte)
+    position = f.chords.position()
+    phi = [*position, *(0 for _ in range(len(bias) - len(position)))]
+    return [
+        g - (2 * alpha * rate + beta * beta * x)
+        for g, rate, x in zip(bias, f.chords.rates(f.v), phi, strict=True)
+    ]
+
+
+def _baumgarte_text(f: Functions) -> str:
+    if f.model.choices.baumgarte is None:
+        return ""
+    return " Errors of position and velocity die out: Baumgarte's terms are part of gam."
+
+
+def _column(name: str, entries: Iterable[Scalar], about: str) -> Result:
+    found = tuple(entries)
+    return Result(name, (len(found),), found, about)

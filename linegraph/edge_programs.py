@@ -1,0 +1,139 @@
+"""Emitted functions of the inverse scheme: every variable of every edge."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linegraph.inverse_scheme import (
+    InverseScheme,
+    across_quantities,
+    powers,
+    reaction_quantities,
+)
+from linegraph.observation import observed
+from linegraph.program import Argument, Call, Listing, Program, Quantity, Result, Routine
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from linegraph.programs import Functions
+    from linegraph.vector import Scalar
+
+
+def across(f: Functions) -> tuple[Program | Routine, ...]:
+    """Velocity and angular velocity across every joint, body, element and constraint."""
+    scheme = _scheme(f, None)
+    entries = tuple(
+        x
+        for linear, angular in scheme.across().values()
+        for part in (linear, angular)
+        for x in part
+    )
+    about = "Across variables: velocity and angular velocity of the head of every edge less its tail's."
+    result = Result("X", (len(entries),), entries, "across variables, in ground axes")
+    return (f.program("across", about, ("q", "v"), (result,)),)
+
+
+def reactions(f: Functions) -> tuple[Program | Routine, ...]:
+    """What every joint and constraint exerts: from given accelerations, and from inputs."""
+    names = _joints(f)
+    if not names:
+        return ()
+    scheme = _scheme(f, f.symbols("a"))
+    entries: list[Scalar] = []
+    for name in names:
+        force, torque = scheme.reaction(name)
+        entries += [*force, *torque]
+    result = Result("R", (len(entries),), tuple(entries), "reactions")
+    given = ("q", "v", "a", "lam") if f.tree.closed else ("q", "v", "a")
+    about = (
+        "Reactions: the force and the torque, about the origin of its head frame, that every joint exerts on "
+        f"its head, efforts included, for given accelerations{' and multipliers' * f.tree.closed}."
+    )
+    at = f.program("reactions_at", about, given, (result,))
+    about = "Reactions under the inputs u: forward dynamics, then `reactions_at`."
+    return at, _after_dynamics(f, "reactions", about, (result,))
+
+
+def power(f: Functions) -> tuple[Program | Routine, ...]:
+    """Through times across of every edge, and its sums."""
+    found, sums = powers(_scheme(f, f.symbols("a")).edges())
+    results = (
+        Result("P", (len(found),), tuple(found.values()), "power that each edge delivers (W)"),
+        Result("sums", (2,), sums, "sum over translation, and over rotation with levers: zero (W)"),
+    )
+    about = (
+        "Power audit: through times across of every edge, and the sums that the principle of orthogonality "
+        "makes zero, a check at run time."
+    )
+    return (_after_dynamics(f, "power", about, results),)
+
+
+def outputs(f: Functions) -> tuple[Program | Routine, ...]:
+    """What the model asks for by name."""
+    if not f.model.outputs:
+        return ()
+    entries, dynamic = observed(f.model, f.tree, f.dag, f.values, f.chords, _state(f), _scheme(f, f.symbols("a")))
+    result = Result("y", (len(entries),), tuple(entries), "outputs")
+    about = "Outputs: the quantities that the model asks for by name."
+    if dynamic:
+        return (_after_dynamics(f, "outputs", about, (result,)),)
+    return (f.program("outputs", about, ("q", "v"), (result,)),)
+
+
+def listings(f: Functions, chosen: Sequence[str]) -> tuple[Listing, ...]:
+    """The names of everything these functions return."""
+    found = []
+    if "across" in chosen:
+        names = list(_scheme(f, None).across())
+        heading = "across variables"
+        found.append(Listing("across", "NX", heading, across_quantities(names), ("X",)))
+    if "reactions" in chosen and _joints(f):
+        quantities = reaction_quantities(f.model, _joints(f))
+        found.append(Listing("reaction", "NR", "reactions", quantities, ("R",)))
+    if "power" in chosen:
+        names = list(powers(_scheme(f, f.symbols("a")).edges())[0])
+        quantities = tuple(Quantity(name, "W", f"power of {name}") for name in names)
+        found.append(Listing("power", "NE", "powers", quantities, ("P",)))
+    if "outputs" in chosen and f.model.outputs:
+        quantities = tuple(
+            Quantity(o.name, o.unit, o.about or str(o.value)) for o in f.model.outputs
+        )
+        found.append(Listing("output", "NY", "outputs", quantities, ("y",)))
+    return tuple(found)
+
+
+def _joints(f: Functions) -> list[str]:
+    """Joints and constraints that have reactions."""
+    return list(f.tree.ends)
+
+
+def _state(f: Functions) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
+    return tuple(f.q), tuple(f.v)
+
+
+def _scheme(f: Functions, acceleration: Sequence[Scalar] | None) -> InverseScheme:
+    """The inverse scheme with v̇ and λ as symbols."""
+    multipliers = list(zip(f.equations, f.symbols("lam"), strict=True))
+    return InverseScheme(
+        f.derivation,
+        f.tree,
+        f.dag,
+        f.values,
+        f.arms,
+        f.chords,
+        _state(f),
+        acceleration,
+        multipliers,
+    )
+
+
+def _after_dynamics(
+    f: Functions, name: str, about: str, results: tuple[Result, ...]
+) -> Program:
+    """A function that first solves for v̇ and λ."""
+    solved = [Argument("a", len(f.v), f.texts["a"])]
+    if f.tree.closed:
+        solved.append(Argument("lam", len(f.equations), f.texts["lam"]))
+    call = Call("forward_dynamics", (*f.head, "q", "v", "u"), tuple(solved))
+    return f.program(name, about, ("q", "v", "u"), results, (), (call,), status=True)

@@ -1,0 +1,123 @@
+"""What a law may name: parameters, inputs, the time, coordinates and their rates as ``der(x)``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from linegraph.errors import ModelError
+from linegraph.jets import Jet, Jets, lifted
+from linegraph.layout import coordinates
+from linegraph.parameters import names_in, resolver
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from linegraph.algebra import Algebra
+    from linegraph.closure import Chords
+    from linegraph.constraints.relation import Relation
+    from linegraph.kinematics import KinematicTree
+    from linegraph.model import Model
+    from linegraph.vector import Scalar
+
+State = tuple[tuple[Any, ...], tuple[Any, ...]]
+"""q and v."""
+
+
+def scope(
+    model: Model,
+    tree: KinematicTree,
+    algebra: Algebra,
+    parameters: Mapping[str, Scalar],
+    state: State,
+    chords: Chords | None = None,
+) -> dict[str, Any]:
+    """Everything a law may name, with its scalar.
+
+    Args:
+        model: what was said.
+        tree: what was chosen.
+        algebra: where to calculate.
+        parameters: their scalars.
+        state: q and v.
+        chords: where joints that are chords find their coordinates; None to leave these out.
+    """
+    values: dict[str, Any] = {**parameters, **tree.layout.named_inputs}
+    if model.depends_on_time:
+        values["t"] = algebra.symbol("t")
+    known = {c.component.name: c for c in tree.closures}
+    for joint in model.joints:
+        found = joint_state(tree, joint.name, state)
+        if found is not None:
+            at, rates = found
+            derivatives = joint.rates(algebra, at, rates)
+            if joint.drive is not None:
+                derivatives = rates
+        elif chords is None or joint.name not in known:
+            continue
+        else:
+            try:
+                at, rates = chords.coordinates(known[joint.name])
+            except ModelError:
+                continue  # no formula gives them: a law that names them says so
+            derivatives = joint.rates(algebra, at, rates)
+        for quantity, x, dx in zip(joint.positions(), at, derivatives, strict=True):
+            values[quantity.name] = x
+            values[f"der({quantity.name})"] = dx
+    return values
+
+
+def joint_state(tree: KinematicTree, joint: str, state: State) -> Any:
+    """The coordinates and velocities of a joint; None of one whose coordinates are none of the state."""
+    place = tree.layout.own(joint)
+    return None if place is None else coordinates(place, *state)
+
+
+def relations(
+    model: Model,
+    tree: KinematicTree,
+    algebra: Algebra,
+    parameters: Mapping[str, Scalar],
+    state: State,
+    rates: Sequence[Scalar],
+) -> list[tuple[list[Scalar], Scalar, Scalar]]:
+    """Of each relation ``a v = b`` the coefficients a, the right-hand side b and γ of ``a v̇ = γ``.
+
+    Args:
+        model, tree, algebra, parameters, state: as of `scope`.
+        rates: q̇.
+
+    Raises:
+        ModelError: a relation names an input or what has no value.
+    """
+    found = []
+    for relation in tree.relations:
+        who = f'relation "{relation.name}"'
+        _require_no_input(model, relation)
+
+        def evaluate(v: Sequence[Scalar], relation: Relation = relation) -> Scalar:
+            values = scope(model, tree, algebra, parameters, (state[0], tuple(v)))
+            return resolver(algebra, values)(relation.rate)
+
+        jets = Jets(algebra)
+        moving = (
+            tuple(Jet(x, dx, 0) for x, dx in zip(state[0], rates, strict=True)),
+            tuple(lifted(x) for x in state[1]),
+        )
+        lifted_parameters = {name: lifted(x) for name, x in parameters.items()}
+        try:
+            row, right = relation.linear(algebra, evaluate, len(tree.velocities))
+            values = scope(model, tree, jets, lifted_parameters, moving)
+            change = lifted(resolver(jets, values)(relation.rate)).dx
+        except ModelError as error:
+            raise ModelError(who, error.problem) from None
+        found.append((row, right, -change))
+    return found
+
+
+def _require_no_input(model: Model, relation: Relation) -> None:
+    inputs = {declared.name for declared in model.inputs}
+    for name in sorted(names_in(relation.rate) & inputs):
+        problem = f"names the input {name}, whose derivative is not known; prescribe a joint's motion by input"
+        raise ModelError(f'relation "{relation.name}"', problem)
+
+
