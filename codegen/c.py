@@ -43,7 +43,8 @@ def render(module: Module) -> dict[str, str]:
     sign = any(_FUNCTIONS["sign"] in line for _, body in functions for line in body)
     helpers = routines.helpers(module)
     source = templates.fill(
-        "c/source.c.jinja", functions=functions,
+        "c/source.c.jinja",
+        functions=functions,
         sign=sign,
         helpers=helpers,
         w_at=routines.independent(module),
@@ -112,7 +113,9 @@ def _document(module: Module, program: Program | Routine, statuses: dict[int, st
     return _block(lines)
 
 
-def _signature(module: Module, program: Program | Routine, statuses: dict[str, dict[int, str]]) -> str:
+def _signature(
+    module: Module, program: Program | Routine, statuses: dict[str, dict[int, str]]
+) -> str:
     prefix = f"{module.name.upper()}_"
     parts = [_argument(module, argument, prefix) for argument in program.arguments]
     for result in program.results:

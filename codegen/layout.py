@@ -63,8 +63,12 @@ def head(module: Module) -> list[str]:
     for listing in (*named(module), Listing("p", "", "parameters", module.parameters)):
         if listing.quantities:
             value = "value, " if listing.symbol == "p" else ""
-            title = f"{listing.symbol}, the {listing.heading}: index, name, {value}unit, meaning"
-            lines += [*prose.paragraph(title), *prose.table(listing.quantities), ""]
+            symbol = listing.sizes[0] if listing.sizes else listing.symbol
+            meaning = "" if listing.groups else ", meaning"
+            title = f"{symbol}, the {listing.heading}: index, name, {value}unit{meaning}"
+            rows = listing.groups or listing.quantities
+            step = len(listing.quantities) // len(rows)
+            lines += [*prose.paragraph(title), *prose.table(rows, step), ""]
     return lines[:-1]
 
 

@@ -73,8 +73,9 @@ def body(
 
 
 def _calling(module: Module, routine: Routine, prefix: str) -> Callable[..., str]:
-    """How a template calls another function: ``call("bias", "h", v="v_on")`` gives ``arm_bias(p, q, v_on, h)``.
+    """How a template calls another function.
 
+    ``call("bias", "h", v="v_on")`` gives ``arm_bias(p, q, v_on, h)``.
     The first names are those of the results; arguments have their own names unless renamed.
     """
     programs = {program.name: program for program in module.programs}

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from linegraph.body import GROUND
-from linegraph.checks import nearest, vector
+from linegraph.checks import finite, nearest, vector
 from linegraph.errors import ModelError
+from linegraph.formula import Formula
 from linegraph.joints import Compound, Fixed, Revolute
 from linegraph.joints.base import BY_INPUT
 from linegraph.vector import ZERO
@@ -14,7 +15,6 @@ from linegraph.vector import ZERO
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from linegraph.joints import Joint
     from linegraph.model import Model
     from linegraph.words import BodyHandle
 
@@ -81,16 +81,42 @@ def _product(inertia: Any, a: Any, b: Any) -> Any:
     return f"({inertia})*({factor})" if isinstance(inertia, str) else inertia * factor
 
 
-def welded(model: Model, joint: Joint, value: float) -> Fixed:
-    """The fixed joint that a joint of one freedom is at a value: at its tail frame, moved."""
+def locked(model: Model, name: str, value: float) -> Fixed:
+    """The fixed joint that a joint of one freedom is at a value: at its tail frame, moved.
+
+    Raises:
+        ModelError: no such joint, or it has no coordinate or more than one.
+    """
     from linegraph.kinematics import moved
 
+    who = f'joint "{name}"'
+    joints = {joint.name: joint for joint in model.joints}
+    if name not in joints:
+        raise ModelError(who, f"there is no such joint to lock; {nearest(name, joints)}")
+    joint = joints[name]
+    if joint.freedoms != 1:
+        raise ModelError(who, f"is {joint.kind}; only joints of one freedom can be locked")
+    finite((value,), who)
     tail, head = joint.between
     terminals = model.terminals()
     if tail not in terminals:
-        who = f'joint "{joint.name}"'
         raise ModelError(who, f'there is no body or frame "{tail}"; {nearest(tail, terminals)}')
     body, placement = terminals[tail]
-    frame = f"{joint.name}.locked"
-    terminal = model.add_frame(body, frame, moved(placement, joint, value, model.snap))
-    return Fixed(joint.name, (terminal, head))
+    terminal = model.add_frame(body, f"{name}.locked", moved(placement, joint, value, model.snap))
+    return Fixed(name, (terminal, head))
+
+
+def followers_at(model: Model, name: str, value: float) -> list[tuple[str, float]]:
+    """The joints coupled to a joint that is locked, and where that leaves them.
+
+    Raises:
+        ModelError: a coupling is a text, whose value is not known yet.
+    """
+    found = []
+    for coupling in model.couplings:
+        if coupling.master == name:
+            if any(isinstance(x, (str, Formula)) for x in (coupling.ratio, coupling.offset)):
+                problem = f'follows "{name}" by a text; lock it first, at a value'
+                raise ModelError(f'joint "{coupling.joint}"', problem)
+            found.append((coupling.joint, coupling.ratio * value + coupling.offset))
+    return found

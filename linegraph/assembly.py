@@ -116,20 +116,22 @@ class _Search:
     def judged(self, q: list[float]) -> Assembly:
         """The position with what the constraints are worth around it."""
         np = self.np
-        best, at = -1, q
-        for k in range(3):
-            place = q if k == 0 else self._beside(q)
-            if place is not None and (rank := self._rank(place)) > best:
-                best, at = rank, place
+        places = [q, *(x for _ in range(2) if (x := self._beside(q)) is not None)]
+        best = max(self._rank(place) for place in places)
+        at = next(place for place in places if self._rank(place) == best)
         J = self._jacobian(at)
         rows, columns = J.shape
         left = np.linalg.svd(J)[0][:, best:] if rows and columns else np.zeros((rows, 0))
         unique = [bool(np.abs(left[k]).max(initial=0.0) < 1e-6) for k in range(rows)]
         self._require_consistent(at, J, left)
         independent = self._independent(J, best)
-        self._require_inertia(at, J, best)
+        massless = [self._massless(place, best) for place in places]
+        if all(massless):
+            raise _no_inertia(massless[0] or [])
         position_rank = self._rank_of(J[: sum(e.holonomic for e in self.equations)])
-        return Assembly([float(x) for x in q], best, position_rank, rows - best, columns - best, unique, independent)
+        place = [float(x) for x in q]
+        counts = (best, position_rank, rows - best, columns - best)
+        return Assembly(place, *counts, unique, independent)
 
     # -- Newton's method
 
@@ -225,7 +227,7 @@ class _Search:
             for mine, given in zip(motion.rotation.matrix(), rotation, strict=True)
             for a, b in zip(mine, given, strict=True)
         )
-        return max(differences) > 1e-6
+        return bool(max(differences) > 1e-6)
 
     # -- what is found there
 
@@ -279,27 +281,20 @@ class _Search:
                 )
                 raise ModelError(f"constraints {_quoted(names)}", problem)
 
-    def _require_inertia(self, q: list[float], J: Array, rank: int) -> None:
-        """Refuse motions that the constraints allow and nothing with mass takes part in."""
+    def _massless(self, q: list[float], rank: int) -> list[str] | None:
+        """The velocities of a motion that the constraints allow and nothing with mass takes part in."""
         np = self.np
+        J = self._jacobian(q)
         M = np.array(self.numeric.mass_matrix(q), float)
         allowed = np.linalg.svd(J)[2][rank:].T if len(J) else np.eye(len(M))
         if not allowed.shape[1]:
-            return
+            return None
         values, vectors = np.linalg.eigh(allowed.T @ M @ allowed)
         if values[0] > 1e-12 * max(np.abs(M).max(), 1e-300):
-            return
+            return None
         motion = np.abs(allowed @ vectors[:, 0])
-        names = [
-            quantity.name
-            for quantity, x in zip(self.tree.velocities, motion, strict=True)
-            if x > 0.1 * motion.max()
-        ]
-        problem = (
-            "moves no inertia that the loops allow to move: the mass matrix is singular there. Give the "
-            "bodies mass and inertia"
-        )
-        raise ModelError(f"motion of {_quoted(names)}", problem)
+        pairs = zip(self.tree.velocities, motion, strict=True)
+        return [quantity.name for quantity, x in pairs if x > 0.1 * motion.max()]
 
     def _refusal(self, q: list[float]) -> ModelError:
         """What to tell where no position closes the loops: the worst chord and its circuit."""
@@ -307,13 +302,23 @@ class _Search:
         worst = self.equations[int(phi.argmax())]
         circuit = self.derivation.circuit_of(worst.component)
         kind = self.tree.ends[worst.component].component.kind
-        held = f" with {_quoted([self.tree.positions[k].name for k in self.held])} held" * bool(self.held)
+        held = f" with {_quoted([self.tree.positions[k].name for k in self.held])} held" * bool(
+            self.held
+        )
         problem = (
             f"closes the circuit {' - '.join(circuit)}, which cannot be assembled{held}: a gap of "
             f"{phi.max():.3g} remains. Check lengths and axes, or give `start` values near a position"
         )
         who = "joint" if isinstance(self.tree.ends[worst.component].component, Joint) else kind
         return ModelError(f'{who} "{worst.component}"', problem)
+
+
+def _no_inertia(names: Sequence[str]) -> ModelError:
+    problem = (
+        "moves no inertia that the loops allow to move: the mass matrix is singular there. Give the "
+        "bodies mass and inertia"
+    )
+    return ModelError(f"motion of {_quoted(names)}", problem)
 
 
 def _quoted(names: Sequence[str] | Mapping[str, Any]) -> str:

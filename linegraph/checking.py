@@ -20,6 +20,7 @@ from linegraph.loads import applied
 from linegraph.mass_matrix import mass_matrix
 from linegraph.paper import paper_matrices
 from linegraph.parameters import Parameter, valued
+from linegraph.program import Program
 from linegraph.programs import module_of
 
 if TYPE_CHECKING:
@@ -119,7 +120,9 @@ class _State:
 
     def emitted(self, module: Module) -> tuple[list[Vector], Vector]:
         """M and h by the program that would be emitted."""
-        program = next(program for program in module.programs if program.name == "equations")
+        program = next(
+            p for p in module.programs if isinstance(p, Program) and p.name == "equations"
+        )
         given = {"q": self.q, "v": self.v, **self.algebra.arguments}
         M, h = run(program, given)
         size = len(self.v)

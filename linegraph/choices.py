@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+from linegraph.checks import nearest
+from linegraph.errors import ModelError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 JOINT, ABSOLUTE, ABSOLUTE_ANGLE = COORDINATES = ("joint", "absolute", "absolute-angle")
 """Which edges carry a body's coordinates: its joint, its inertia edge, or its joint for the place and its
@@ -37,3 +42,19 @@ class Choices:
     def kind(self, body: str) -> str:
         """Which of `COORDINATES` a body has."""
         return self.of_body.get(body, self.coordinates)
+
+
+def chosen(choices: Choices, **changes: Any) -> Choices:
+    """Choices with some of them changed.
+
+    Raises:
+        ModelError: there is no such kind of coordinates or of axes.
+    """
+    found = replace(choices, **changes)
+    for kind in (found.coordinates, *found.of_body.values()):
+        if kind not in COORDINATES:
+            raise ModelError("formulation", f'coordinates "{kind}"; {nearest(kind, COORDINATES)}')
+    if found.reactions not in REACTION_AXES:
+        problem = f'reactions "{found.reactions}"; {nearest(found.reactions, REACTION_AXES)}'
+        raise ModelError("formulation", problem)
+    return found

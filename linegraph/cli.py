@@ -1,4 +1,4 @@
-"""The command line: `linegraph new`, `emit`, `show`, `schema`, `completion`.
+"""The command line: `linegraph new`, `emit`, `show`, `check`, `trees`, `assemble`, `schema`, `completion`.
 
 The only module that prints. Results go to standard output, messages and progress to standard error.
 Exit status: 0 done, 1 a check has failed, 2 the model or the call is wrong. Heavy modules are imported by
@@ -113,6 +113,13 @@ def main() -> None:
     "--name", metavar="NAME", help="Prefix of functions and files.  [default: the model's name]"
 )
 @click.option(
+    "--with",
+    "functions",
+    type=click.Choice(["power"]),
+    multiple=True,
+    help="Further functions to write: power, the audit of through times across over all edges.",
+)
+@click.option(
     "--lang",
     "languages",
     type=click.Choice(LANGUAGES),
@@ -127,6 +134,7 @@ def emit(
     snap: float,
     out: str,
     name: str | None,
+    functions: tuple[str, ...],
     languages: tuple[str, ...],
 ) -> None:
     """Write the equations of motion of MODEL as source files.
@@ -145,6 +153,10 @@ def emit(
       forward_dynamics   a = M^-1 (Q(u) - h)
       coordinate_rates   q' = N(q) v
       energy             kinetic and potential
+      across, reactions  every variable of every joint and element, by the inverse scheme
+    and with closed loops or constraints
+      constraints, constraint_jacobian, constraint_rates, constraint_bias, project,
+      complete, reduction, reduced_equations: the mechanism in its independent coordinates
     """
     with _explained():
         from linegraph.emission import emit as write
@@ -157,10 +169,62 @@ def emit(
                 name=name,
                 languages=languages or None,
                 folded=parameters == "folded",
+                functions=functions,
                 progress=tell,
             )
         for path in written:
             click.echo(str(path))
+
+
+@main.command()
+@_about_model
+def trees(
+    model: str, base: str, locks: tuple[str, ...], parameters: str | None, snap: float
+) -> None:
+    """List the trees MODEL may be derived with, cheapest first.
+
+    The tree decides which variables are coordinates and which joints close loops; the motion is the same
+    with each. Printed are operations (M, h and, with loops, J and gamma), velocities, constraints, the
+    joints that are cut, and what to write in [formulation] for this tree.
+    """
+    with _explained():
+        from linegraph.trees import candidates, table
+
+        system = _read(model, base, locks, parameters, snap)
+        with _progress() as tell:
+            found = candidates(system, tell)
+        click.echo(table(found), nl=False)
+
+
+@main.command()
+@_about_model
+@click.option(
+    "--set",
+    "held",
+    metavar="COORDINATE=VALUE",
+    multiple=True,
+    help="Hold a coordinate at a value (rad or m). Repeatable.",
+)
+def assemble(
+    model: str,
+    base: str,
+    locks: tuple[str, ...],
+    parameters: str | None,
+    snap: float,
+    held: tuple[str, ...],
+) -> None:
+    """Find a position of MODEL that closes all loops.
+
+    The search begins at the joints' start values. Printed are the coordinates, the degrees of freedom and
+    how many constraints are redundant.
+    """
+    with _explained():
+        from linegraph.derive import derive
+        from linegraph.report import assembled
+
+        values = dict(_assignment(text, "--set") for text in held)
+        derivation = derive(_read(model, base, locks, parameters, snap))
+        click.echo(assembled(derivation, derivation.placed_assembly(values)), nl=False)
 
 
 @main.command()
@@ -272,7 +336,7 @@ def _read(
             )
         model = modelfile.read(source, snap=snap)
     for lock in locks:
-        joint, value = _lock(lock)
+        joint, value = _assignment(lock, "--lock", 0.0)
         model.lock(joint, value)
     for warning in model.warnings:
         click.echo(f"{click.style('warning:', fg='yellow', bold=True)} {warning}", err=True)
@@ -292,16 +356,16 @@ def _is_urdf(source: str) -> bool:
     return start.startswith(b"<")
 
 
-def _lock(text: str) -> tuple[str, float]:
-    """Split JOINT[=VALUE]; a joint's name may itself contain an equals sign."""
-    joint, sign, value = text.rpartition("=")
-    if not sign:
-        return text, 0.0
+def _assignment(text: str, option: str, default: float | None = None) -> tuple[str, float]:
+    """Split NAME=VALUE, or NAME where there is a default; a name may itself contain an equals sign."""
+    name, sign, value = text.rpartition("=")
+    if not sign and default is not None:
+        return text, default
     try:
-        return joint, float(value)
+        return name, float(value)
     except ValueError:
         raise click.BadParameter(
-            f"{value!r} is not a number (rad or m)", param_hint="--lock"
+            f"{value!r} is not a number (rad or m)", param_hint=option
         ) from None
 
 

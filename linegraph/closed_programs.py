@@ -73,7 +73,9 @@ def forward_dynamics(f: Functions) -> tuple[Program | Routine, ...]:
     """v̇ and λ, by elimination of J with complete pivoting: redundant constraints drop out."""
     results = (
         Result("a", (len(f.v),), (), "accelerations, the derivatives of v"),
-        Result("lam", (len(f.equations),), (), "multipliers; where not unique, those of least norm"),
+        Result(
+            "lam", (len(f.equations),), (), "multipliers; where not unique, those of least norm"
+        ),
     )
     about = (
         "Forward dynamics with constraints: M a + h = Q(u) + J^T lam, J a = gam."
@@ -95,7 +97,7 @@ def forward_dynamics(f: Functions) -> tuple[Program | Routine, ...]:
 
 
 def project(f: Functions) -> tuple[Program | Routine, ...]:
-    """q and v onto the constraints."""
+    """Q and v onto the constraints."""
     if not f.tree.closed:
         return ()
     results = (
@@ -148,7 +150,10 @@ def reduction(f: Functions) -> tuple[Program | Routine, ...]:
         "Velocities and accelerations from the independent ones: v = T w (+ what is prescribed), "
         "vdot = T wdot + c.",
         ("q", "v"),
-        (Result("T", (n, k), (), "all velocities for unit w"), Result("c", (n,), (), "vdot at wdot = 0")),
+        (
+            Result("T", (n, k), (), "all velocities for unit w"),
+            Result("c", (n,), (), "vdot at wdot = 0"),
+        ),
         "reduction",
         (NOT_DETERMINED,),
         ("constraint_jacobian", "constraint_bias"),
@@ -187,10 +192,15 @@ def independent(f: Functions) -> list[tuple[int, int]]:
     for name in wanted:
         if name not in names or names[name] not in pairs:
             known = ", ".join(n for n, k in names.items() if k in pairs)
-            problem = f'independent: "{name}" is no coordinate of this tree with its rate as velocity; known: {known}'
+            problem = (
+                f'independent: "{name}" is no coordinate of this tree with its rate as velocity; '
+                f"known: {known}"
+            )
             raise ModelError("formulation", problem)
     if len(wanted) != assembly(f).freedoms:
-        problem = f"independent: {len(wanted)} coordinates for {assembly(f).freedoms} degrees of freedom"
+        problem = (
+            f"independent: {len(wanted)} coordinates for {assembly(f).freedoms} degrees of freedom"
+        )
         raise ModelError("formulation", problem)
     return [(pairs[names[name]], names[name]) for name in wanted]
 
@@ -215,7 +225,9 @@ def listings(f: Functions) -> tuple[Listing, ...]:
     """Constraints with their multipliers, and the independent coordinates."""
     unique = assembly(f).unique
     multipliers = tuple(
-        Quantity(e.multiplier.name, e.multiplier.unit, e.multiplier.about + "; not unique" * (not one))
+        Quantity(
+            e.multiplier.name, e.multiplier.unit, e.multiplier.about + "; not unique" * (not one)
+        )
         for e, one in zip(f.equations, unique, strict=True)
     )
     chosen = tuple(f.tree.velocities[v] for _, v in independent(f))
@@ -242,7 +254,9 @@ def remarks(f: Functions) -> tuple[str, ...]:
         f"independent, so there are {found.freedoms} degrees of freedom."
     )
     if found.redundant:
-        names = [e.multiplier.name for e, one in zip(f.equations, found.unique, strict=True) if not one]
+        names = [
+            e.multiplier.name for e, one in zip(f.equations, found.unique, strict=True) if not one
+        ]
         text += (
             f" {found.redundant} are redundant: the motion is the same without them, but these multipliers, "
             f"and the reactions that depend on them, are not unique: {', '.join(names)}."

@@ -13,7 +13,6 @@ the tree's velocities is the row of J, and the derivative of c at v̇ = 0 is -γ
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -21,7 +20,6 @@ from typing import TYPE_CHECKING, Any
 from linegraph.constraints.base import Constraint, Pose, Prescribed, Row
 from linegraph.frames import Frame, Pair, along_velocities, frames, seated
 from linegraph.jets import Jet, Jets, lifted
-from linegraph.joints import Joint
 from linegraph.joints.base import (
     TORQUES,
     Along,
@@ -51,9 +49,10 @@ from linegraph.vector import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from linegraph.algebra import Algebra
+    from linegraph.joints import Joint
     from linegraph.kinematics import Closure, KinematicTree
 
 
@@ -110,7 +109,9 @@ class Chords:
         self._crossed = crossed
         self._parameters = parameters
         self._ends: dict[str, tuple[Frame, Frame]] = {}
-        self._relations = dict(zip((r.name for r in tree.relations), relations, strict=bool(relations)))
+        self._relations = dict(
+            zip((r.name for r in tree.relations), relations, strict=bool(relations))
+        )
 
     @cached_property
     def frames(self) -> list[Frame]:
@@ -156,7 +157,9 @@ class Chords:
             if equation.component in self._relations:
                 row = list(self._relations[equation.component][0])
             else:
-                set_label(self._algebra, f"chord {equation.component}, its direction {equation.place + 1}")
+                set_label(
+                    self._algebra, f"chord {equation.component}, its direction {equation.place + 1}"
+                )
                 closure = closures[equation.component]
                 pair = self._pair(closure, self.rows[equation.component][equation.place])
                 for freedom, entry in self.along(pair):
@@ -221,9 +224,7 @@ class Chords:
         """-d/dt (f . u + m . w - b) at v̇ = 0, the row's own derivative by calculating with jets."""
         jets = Jets(self._algebra)
         base = resolver(self._algebra, self._parameters)
-        drive = [
-            None if x is None else Prescribed(x, Jet(x.dx, x.ddx, 0)) for x in closure.drive
-        ]
+        drive = [None if x is None else Prescribed(x, Jet(x.dx, x.ddx, 0)) for x in closure.drive]
         moving = _rows(
             closure, jets, lambda x: lifted(base(x)), _in_motion(tail), _in_motion(head), drive
         )
@@ -356,9 +357,7 @@ def seen(tail: Pose | Frame, head: Pose | Frame) -> tuple[Matrix, Vector]:
     return product(inward, head.rotation), times(inward, subtract(head.origin, tail.origin))
 
 
-def _duals(
-    algebra: Algebra, joint: Joint, tail: Frame, head: Frame
-) -> list[tuple[Vector, Vector]]:
+def _duals(algebra: Algebra, joint: Joint, tail: Frame, head: Frame) -> list[tuple[Vector, Vector]]:
     """A joint's unit efforts in ground axes: (torque, force)."""
     duals = joint.duals(algebra, *seen(tail, head))
     return [(times(head.rotation, m), times(head.rotation, f)) for m, f in duals]
@@ -373,9 +372,7 @@ def relative_motion(tail: Frame, head: Frame) -> tuple[Vector, Vector]:
 
 def _in_motion(frame: Frame) -> Pose:
     """A frame's pose as jets: axes that turn and an origin that moves; second derivatives are not needed."""
-    columns = [
-        _jets(column, cross(frame.angular, column)) for column in transpose(frame.rotation)
-    ]
+    columns = [_jets(column, cross(frame.angular, column)) for column in transpose(frame.rotation)]
     x, y, z = columns
     return Pose(transpose((x, y, z)), _jets(frame.origin, frame.linear))
 

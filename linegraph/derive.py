@@ -22,18 +22,19 @@ from linegraph.closure import Chords
 from linegraph.errors import ModelError, SourceError
 from linegraph.expression import Dag
 from linegraph.formulation import Formulation, formulate
-from linegraph.kinematics import KinematicTree, kinematic_tree
 from linegraph.loads import Applied, applied
 from linegraph.mass_matrix import mass_matrix
 from linegraph.parameters import Parameter, resolver, valued
 from linegraph.regularity import require_regular
 from linegraph.scope import relations
 from linegraph.transfer import transfer
+from linegraph.walk import kinematic_tree
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from linegraph.graph import SystemGraph
+    from linegraph.kinematics import KinematicTree
     from linegraph.model import Model
     from linegraph.topology import Topology
     from linegraph.vector import Scalar
@@ -127,9 +128,25 @@ class Derivation:
         """Inertia edges that are branches by choice."""
         return tuple(f"{body}/inertia" for body in self.formulation.absolute)
 
-    def assembly(self, hold: Mapping[str, float] | None = None, seed: int = 0) -> Assembly:
+    def placed_assembly(self, hold: Mapping[str, float]) -> Assembly:
+        """The assembly with some coordinates held, errors with their place in the model's file.
+
+        Raises:
+            ModelError: there is none.
+        """
+        try:
+            return self.assembly(hold, start=self.assembled.q)
+        except ModelError as error:
+            raise placed(error, self.model) from None
+
+    def assembly(
+        self,
+        hold: Mapping[str, float] | None = None,
+        seed: int = 0,
+        start: Sequence[float] | None = None,
+    ) -> Assembly:
         """A position that closes all loops, and what the constraints are worth there; see `assembly`."""
-        return assemble(self, hold, seed)
+        return assemble(self, hold, seed, start)
 
     @cached_property
     def symbolic(self) -> Any:
@@ -258,10 +275,12 @@ def derive(model: Model) -> Derivation:
         formulation = formulate(model, graph)
         require_regular(model, formulation)
         derivation = Derivation(model, graph, formulation)
-        if derivation.structure.closed and all(p.value is not None for p in model.parameters.values()):
+        if derivation.structure.closed and all(
+            p.value is not None for p in model.parameters.values()
+        ):
             _ = derivation.assembled
     except ModelError as error:
-        raise _placed(error, model) from None
+        raise placed(error, model) from None
     return derivation
 
 
@@ -272,7 +291,7 @@ def variant(model: Model, **choices: Any) -> Model:
     return twin
 
 
-def _placed(error: ModelError, model: Model) -> ModelError:
+def placed(error: ModelError, model: Model) -> ModelError:
     """Give an error the place in the file that the model was read from."""
     if model.source is None:
         return error

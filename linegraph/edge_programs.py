@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.inverse_scheme import (
-    InverseScheme,
+from linegraph.edges import (
+    across_groups,
     across_quantities,
     powers,
+    reaction_axes,
+    reaction_groups,
     reaction_quantities,
 )
+from linegraph.inverse_scheme import InverseScheme
 from linegraph.observation import observed
 from linegraph.program import Argument, Call, Listing, Program, Quantity, Result, Routine
 
@@ -29,7 +32,9 @@ def across(f: Functions) -> tuple[Program | Routine, ...]:
         for part in (linear, angular)
         for x in part
     )
-    about = "Across variables: velocity and angular velocity of the head of every edge less its tail's."
+    about = (
+        "Across variables: velocity and angular velocity of the head of every edge less its tail's."
+    )
     result = Result("X", (len(entries),), entries, "across variables, in ground axes")
     return (f.program("across", about, ("q", "v"), (result,)),)
 
@@ -73,7 +78,9 @@ def outputs(f: Functions) -> tuple[Program | Routine, ...]:
     """What the model asks for by name."""
     if not f.model.outputs:
         return ()
-    entries, dynamic = observed(f.model, f.tree, f.dag, f.values, f.chords, _state(f), _scheme(f, f.symbols("a")))
+    entries, dynamic = observed(
+        f.model, f.tree, f.dag, f.values, f.chords, _state(f), _scheme(f, f.symbols("a"))
+    )
     result = Result("y", (len(entries),), tuple(entries), "outputs")
     about = "Outputs: the quantities that the model asks for by name."
     if dynamic:
@@ -86,11 +93,17 @@ def listings(f: Functions, chosen: Sequence[str]) -> tuple[Listing, ...]:
     found = []
     if "across" in chosen:
         names = list(_scheme(f, None).across())
-        heading = "across variables"
-        found.append(Listing("across", "NX", heading, across_quantities(names), ("X",)))
+        heading = (
+            "across variables: of each edge velocity and angular velocity x, y, z, in ground axes"
+        )
+        quantities = across_quantities(names)
+        found.append(Listing("across", "NX", heading, quantities, ("X",), across_groups(names)))
     if "reactions" in chosen and _joints(f):
         quantities = reaction_quantities(f.model, _joints(f))
-        found.append(Listing("reaction", "NR", "reactions", quantities, ("R",)))
+        groups = reaction_groups(_joints(f))
+        axes = reaction_axes(f.model)
+        heading = f"reactions: of each joint force and torque x, y, z on its head, in {axes} axes"
+        found.append(Listing("reaction", "NR", heading, quantities, ("R",), groups))
     if "power" in chosen:
         names = list(powers(_scheme(f, f.symbols("a")).edges())[0])
         quantities = tuple(Quantity(name, "W", f"power of {name}") for name in names)
@@ -128,9 +141,7 @@ def _scheme(f: Functions, acceleration: Sequence[Scalar] | None) -> InverseSchem
     )
 
 
-def _after_dynamics(
-    f: Functions, name: str, about: str, results: tuple[Result, ...]
-) -> Program:
+def _after_dynamics(f: Functions, name: str, about: str, results: tuple[Result, ...]) -> Program:
     """A function that first solves for v̇ and λ."""
     solved = [Argument("a", len(f.v), f.texts["a"])]
     if f.tree.closed:

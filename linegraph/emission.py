@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.derive import derive
+from linegraph.derive import derive, placed
 from linegraph.errors import ModelError
 from linegraph.files import write_all
 from linegraph.programs import ON_REQUEST, module_of
@@ -113,4 +113,8 @@ def module_for(
         if function not in ON_REQUEST:
             raise ModelError(f'function "{function}"', f"is not one of {', '.join(ON_REQUEST)}")
     about = [*about, *CONVENTIONS]
-    return module_of(derive(model), name, folded=folded, about=about, wanted=wanted)
+    derivation = derive(model)
+    try:
+        return module_of(derivation, name, folded=folded, about=about, wanted=wanted)
+    except ModelError as error:
+        raise placed(error, model) from None

@@ -158,7 +158,9 @@ def _require_known(model: Model) -> None:
     edges = [joint.name for joint in model.joints] + [f"{name}/inertia" for name in model.bodies]
     for name in model.choices.tree:
         if name not in edges:
-            raise ModelError(f'branch "{name}"', f"is no joint or inertia edge; {nearest(name, edges)}")
+            raise ModelError(
+                f'branch "{name}"', f"is no joint or inertia edge; {nearest(name, edges)}"
+            )
     for name in model.choices.of_body:
         if name not in model.bodies:
             problem = f"coordinates: there is no such body; {nearest(name, model.bodies)}"
@@ -182,5 +184,7 @@ def _require_followers(model: Model, branches: frozenset[str]) -> None:
     for coupling in model.couplings:
         for part in (coupling.joint, coupling.master):
             if part in names and part not in branches:
-                problem = "is coupled to another and must be a branch; cut another joint of the loop"
+                problem = (
+                    "is coupled to another and must be a branch; cut another joint of the loop"
+                )
                 raise ModelError(f'joint "{part}"', problem)

@@ -129,15 +129,15 @@ def along_velocities(
     """
     meeting, level = _meeting(tree, crossed, pair.head, pair.tail)
     rest = ZERO
-    for link, sign in ((pair.head, 1), (pair.tail, -1)):
+    for start, sign in ((pair.head, 1), (pair.tail, -1)):
         force = pair.force if sign > 0 else vector.negate(pair.force)
         torque = pair.torque if sign > 0 else vector.negate(pair.torque)
-        point = pair.point
+        point, link = pair.point, start
         while link != meeting:
-            arm, frame = crossed[link], found[link]
+            frame = found[link]
             about = add(torque, cross(subtract(point, frame.origin), force))
             yield from _projected(tree, crossed, found, link, about, force)
-            if arm.level:
+            if crossed[link].level:
                 torque, point = ZERO, frame.origin
             link = tree.links[link].parent
         if level and link >= 0:
@@ -164,9 +164,7 @@ def _projected(
         yield freedom, freedom.ratio * (dot(s, torque) + dot(u, force))
 
 
-def _meeting(
-    tree: KinematicTree, crossed: Sequence[Arm], head: int, tail: int
-) -> tuple[int, bool]:
+def _meeting(tree: KinematicTree, crossed: Sequence[Arm], head: int, tail: int) -> tuple[int, bool]:
     """The link where the ways of two links to ground meet, and whether a level link lies before it."""
     inward = []
     link = head

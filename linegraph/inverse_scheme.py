@@ -12,18 +12,18 @@ a *lever* edge in rotation from ground to the mass centre, so that the sums vani
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from linegraph.body import GROUND, MASS_CENTER
 from linegraph.choices import GROUND_AXES, HEAD
 from linegraph.constraints.base import Constraint
+from linegraph.edges import NOTHING, Edge, Wrench
 from linegraph.elements import Element, Load
 from linegraph.frames import GROUND_FRAME, Frame, Pair, frames, seated
 from linegraph.kinematics import Seat, mass_center
 from linegraph.loads import Acting
 from linegraph.orthogonality import applied_to, set_label
 from linegraph.parameters import resolver
-from linegraph.program import Quantity
 from linegraph.vector import (
     ZERO,
     Scalar,
@@ -48,46 +48,6 @@ if TYPE_CHECKING:
     from linegraph.model import Model
     from linegraph.orthogonality import Arm
     from linegraph.scope import State
-
-XYZ = "xyz"
-
-
-class Wrench(NamedTuple):
-    """A force and a torque about a point, in ground axes."""
-
-    force: Vector
-    torque: Vector
-
-    def __add__(self, other: Any) -> Wrench:
-        return Wrench(add(self.force, other.force), add(self.torque, other.torque))
-
-    def turned(self) -> Wrench:
-        """The reaction."""
-        return Wrench(negate(self.force), negate(self.torque))
-
-    def about(self, old: Vector, new: Vector) -> Wrench:
-        """The same about another point."""
-        return Wrench(self.force, add(self.torque, cross(subtract(old, new), self.force)))
-
-
-NOTHING = Wrench(ZERO, ZERO)
-
-
-class Edge(NamedTuple):
-    """What an edge does: through and across variables in ground axes, and the lever of its force.
-
-    Attributes:
-        through: on its head, about the head's origin.
-        linear, angular: velocity and angular velocity of the head less those of the tail.
-        lever: torque on the tail that the force's offset from it makes.
-        turning: the angular velocity of the tail.
-    """
-
-    through: Wrench
-    linear: Vector
-    angular: Vector
-    lever: Vector = ZERO
-    turning: Vector = ZERO
 
 
 class InverseScheme:
@@ -191,13 +151,11 @@ class InverseScheme:
         set_label(self._algebra, f"forces, body {body}")
         return self.inertia(body).through.turned()
 
-    def _branch(
-        self, needed: dict[str, Wrench], closure: Closure, forward: bool
-    ) -> Wrench:
+    def _branch(self, needed: dict[str, Wrench], closure: Closure, forward: bool) -> Wrench:
         """The cutset of a branch: what all beyond it still needs passes through it."""
         joint: Any = closure.component
         set_label(self._algebra, f"reaction in {joint.name}")
-        tail, head = (self.terminal(end) for end in joint.between)
+        head = self.terminal(joint.between[1])
         near, far = joint.between if forward else reversed(joint.between)
         body, inner = self._terminals[far][0], self._terminals[near][0]
         rest = needed[body].about(self.center(body).origin, head.origin)
@@ -274,7 +232,7 @@ class InverseScheme:
         return self._edge(Wrench(pair.force, pair.torque), tail, head)
 
     def inertia(self, body: str) -> Edge:
-        """A body's inertia edge, from ground to its mass centre: d'Alembert's force and torque, and the weight."""
+        """A body's inertia edge, from ground to its mass centre: d'Alembert's force and torque, weight."""
         own = self._model.bodies[body]
         frame = self.center(body)
         mass = self._resolve(own.mass)
@@ -384,38 +342,3 @@ class InverseScheme:
                 center = self.center(body)
                 arms[f"{body}/arm{frame}"] = self._edge(through, center, self.terminal(terminal))
         return arms
-
-
-def powers(edges: Mapping[str, Edge]) -> tuple[dict[str, Scalar], tuple[Scalar, Scalar]]:
-    """Through times across of every edge, and the sums of translation and of rotation, which are zero."""
-    found: dict[str, Scalar] = {}
-    translation: Scalar = 0
-    rotation: Scalar = 0
-    for name, edge in edges.items():
-        found[f"{name}.translation"] = dot(edge.through.force, edge.linear)
-        found[f"{name}.rotation"] = dot(edge.through.torque, edge.angular)
-        found[f"{name}.lever"] = dot(edge.lever, edge.turning)
-        translation = translation + found[f"{name}.translation"]
-        rotation = rotation + found[f"{name}.rotation"] + found[f"{name}.lever"]
-    return found, (translation, rotation)
-
-
-def across_quantities(names: Sequence[str]) -> tuple[Quantity, ...]:
-    """The names of all across variables: velocities and angular velocities in ground axes."""
-    return tuple(
-        Quantity(f"{name}_{letter}{c}", unit, f"{what} {c} across {name}, in ground axes")
-        for name in names
-        for letter, unit, what in (("v", "m/s", "velocity"), ("w", "rad/s", "angular velocity"))
-        for c in XYZ
-    )
-
-
-def reaction_quantities(model: Model, names: Sequence[str]) -> tuple[Quantity, ...]:
-    """The names of all reactions."""
-    axes = {HEAD: "the head's", GROUND_AXES: "ground"}.get(model.choices.reactions, "the tail's")
-    return tuple(
-        Quantity(f"{name}_{letter}{c}", unit, f"{what} {c} that {name} exerts on its head, in {axes} axes")
-        for name in names
-        for letter, unit, what in (("f", "N", "force"), ("t", "N*m", "torque"))
-        for c in XYZ
-    )

@@ -107,7 +107,6 @@ class Jets:
         first, second = _DERIVATIVES[name](self._base, a.x, y)
         return Jet(y, first * a.dx, second * (a.dx * a.dx) + first * a.ddx)
 
-
     def _angle(self, y: Jet, x: Jet) -> Jet:
         """The angle of the point (x, y): its rate is the moment of the velocity over the distance squared."""
         squared = x.x * x.x + y.x * y.x

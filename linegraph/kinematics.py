@@ -8,33 +8,27 @@ rotated and shifted mass distributions.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph import vector
-from linegraph.algebra import Algebra, Constants
-from linegraph.body import GROUND, Body, Placement
-from linegraph.errors import ModelError
+from linegraph.algebra import Constants
+from linegraph.body import Body, Placement
 from linegraph.joints import Joint, Moments
-from linegraph.joints.base import TORQUES, Restriction, point_apart
-from linegraph.layout import Freedom, Layout, Place, floating, layout_of, turning
-from linegraph.parameters import resolver
-from linegraph.rotation import IDENTITY_MATRIX, Rotation, product, rotation_of, snapped
+from linegraph.joints.base import Restriction, point_apart
+from linegraph.rotation import Rotation, product, rotation_of, snapped
 from linegraph.vector import ZERO, Matrix, Scalar, Vector
 
 if TYPE_CHECKING:
     from linegraph.constraints import Constraint
     from linegraph.constraints.relation import Relation
-    from linegraph.formulation import Formulation
     from linegraph.jets import Jet
-    from linegraph.model import Model
+    from linegraph.layout import Freedom, Layout, Place
     from linegraph.program import Quantity
-    from linegraph.topology import Step
 
 Resolve = Callable[[Any], Scalar]
-_NO_MOMENTS = Moments(0, ZERO, (0, 0, 0, 0, 0, 0))
-_ALIGNED = Placement(ZERO, IDENTITY_MATRIX)
+NO_MOMENTS = Moments(0, ZERO, (0, 0, 0, 0, 0, 0))
 
 
 @dataclass(frozen=True)
@@ -126,7 +120,9 @@ class KinematicTree:
     @property
     def closed(self) -> bool:
         """Whether there are constraints."""
-        held = (c.restrictions or c.drive or not isinstance(c.component, Joint) for c in self.closures)
+        held = (
+            c.restrictions or c.drive or not isinstance(c.component, Joint) for c in self.closures
+        )
         return bool(self.relations) or any(held)
 
     @property
@@ -233,17 +229,17 @@ def body_moments(body: Body, resolve: Resolve) -> Moments:
     mass = resolve(body.mass)
     inertia = tuple(resolve(x) for x in body.inertia)
     if body.first is not None:
-        return Moments(mass, _resolved(body.first, resolve), inertia)
+        return Moments(mass, resolved(body.first, resolve), inertia)
     central = Moments(mass, ZERO, inertia)
-    return carried(central, Rotation(), _resolved(body.center or ZERO, resolve))
+    return carried(central, Rotation(), resolved(body.center or ZERO, resolve))
 
 
 def mass_center(body: Body, resolve: Resolve) -> Vector:
     """A body's mass centre in its own frame."""
     if body.first is None:
-        return _resolved(body.center or ZERO, resolve)
+        return resolved(body.center or ZERO, resolve)
     mass = resolve(body.mass)
-    first = _resolved(body.first, resolve)
+    first = resolved(body.first, resolve)
     return ZERO if mass == 0 else (first[0] / mass, first[1] / mass, first[2] / mass)
 
 
@@ -268,149 +264,6 @@ def moved(near: Placement, joint: Joint, value: Any, snap: float) -> Placement:
     return compose(there, inverse(alignment), snap)
 
 
-def kinematic_tree(
-    model: Model, formulation: Formulation, algebra: Algebra, parameters: Mapping[str, Scalar]
-) -> KinematicTree:
-    """Walk the tree from ground outward and fold all that is constant into links.
-
-    Raises:
-        ModelError: a coupling is impossible.
-    """
-    layout = layout_of(model, formulation, algebra, parameters)
-    return _Walk(model, formulation, layout, algebra, parameters).along()
-
-
-class _Walk:
-    """Collects links on a walk from ground outward."""
-
-    def __init__(
-        self,
-        model: Model,
-        formulation: Formulation,
-        layout: Layout,
-        algebra: Algebra,
-        parameters: Mapping[str, Scalar],
-    ) -> None:
-        self._model = model
-        self._formulation = formulation
-        self._layout = layout
-        self._algebra = algebra
-        self._resolve = resolver(algebra, parameters)
-        self._joints = {joint.name: joint for joint in model.joints}
-        self._terminals = model.terminals()
-        self._links: list[Link] = []
-        self._where = {GROUND: (-1, Placement(ZERO, IDENTITY_MATRIX))}
-
-    def along(self) -> KinematicTree:
-        """Take every joint branch in turn; arms lie within a body and are constant."""
-        for step in self._formulation.translation.walk:
-            joint = self._joints.get(step.edge.name)
-            if joint is not None and step.edge.component == joint.name:
-                self._cross(joint, step)
-            elif step.edge.component in self._formulation.absolute and step.near == GROUND:
-                self._float(step.edge.component)
-        gravity = _resolved(self._model.gravity, self._resolve)
-        ends = {end.component.name: end for end in self._ends()}
-        return KinematicTree(
-            tuple(self._links),
-            gravity,
-            self._layout,
-            self._where,
-            tuple(end for end in ends.values() if self._left_out(end.component.name)),
-            self._model.relations,
-            ends,
-        )
-
-    def _left_out(self, name: str) -> bool:
-        """Whether the tree does not say how the ends of a joint or constraint move against each other."""
-        angle = self._formulation.level.get(name)
-        in_space = angle is not None and angle.less is None
-        return in_space or name not in self._formulation.joints
-
-    def _cross(self, joint: Joint, step: Step) -> None:
-        joint = joint.resolved(self._resolve)
-        body, placement = self._terminals[step.near]
-        parent, pose = self._where[body]
-        near = self._compose(pose, self._constant(placement))
-        body, placement = self._terminals[step.far]
-        far = self._constant(placement)
-        if joint.freedoms == 0:
-            self._enter(body, parent, self._compose(near, inverse(far)))
-            return
-        place = self._layout.places[joint.name]
-        forward = step.forward
-        if place.in_space:
-            # an orientation in space, measured from ground: the link has the body's own axes
-            joint, forward = turning(joint.name, body), True
-            far = Placement(far.at, IDENTITY_MATRIX)
-        else:
-            alignment = self._alignment(joint)
-            near, far = self._compose(near, alignment), self._compose(far, alignment)
-        rotation = rotation_of(near.rotation)
-        self._links.append(
-            Link("", parent, joint, forward, rotation, near.at, place, _NO_MOMENTS)
-        )
-        self._enter(body, len(self._links) - 1, inverse(far))
-
-    def _float(self, body: str) -> None:
-        """A body on its inertia edge: a link of its own, its origin at the mass centre."""
-        place = self._layout.places[body]
-        joint = floating(body)
-        self._links.append(Link("", -1, joint, True, Rotation(), ZERO, place, _NO_MOMENTS))
-        center = Placement(mass_center(self._model.bodies[body], self._resolve), IDENTITY_MATRIX)
-        self._enter(body, len(self._links) - 1, inverse(center))
-
-    def _ends(self) -> Iterator[Closure]:
-        """Every joint and constraint as the chord that it is or would be."""
-        drives = self._layout.drives
-        for joint in self._model.joints:
-            joint = joint.resolved(self._resolve)
-            tail, head = (self._seat(end, self._alignment(joint)) for end in joint.between)
-            held: tuple[Restriction, ...] = ()
-            if self._left_out(joint.name):
-                level = joint.name in self._formulation.level
-                found = joint.restricted(self._algebra)
-                held = tuple(r for r in found if isinstance(r, TORQUES) or not level)
-            yield Closure(joint, tail, head, drives.get(joint.name, ()), held)
-        for constraint in self._model.constraints:
-            tail, head = (self._seat(end, _ALIGNED) for end in constraint.ends)
-            yield Closure(constraint, tail, head, drives[constraint.name])
-
-    def _seat(self, terminal: str, alignment: Placement) -> Seat:
-        """Where a terminal's aligned axes are in its link."""
-        body, placement = self._terminals[terminal]
-        link, pose = self._where[body]
-        whole = self._compose(self._compose(pose, self._constant(placement)), alignment)
-        return Seat(link, whole.at, whole.rotation)
-
-    def _enter(self, body: str, index: int, pose: Placement) -> None:
-        """Note where a body is and add its mass distribution to its link."""
-        self._where[body] = (index, pose)
-        if index < 0:
-            return
-        link = self._links[index]
-        own = body_moments(self._model.bodies[body], self._resolve)
-        moments = joined(link.moments, carried(own, rotation_of(pose.rotation), pose.at))
-        name = f"{link.name}, {body}" if link.name else body
-        self._links[index] = replace(link, name=name, moments=moments)
-
-    def _alignment(self, joint: Joint) -> Placement:
-        try:
-            return self._constant(Placement(ZERO, joint.alignment()))
-        except ModelError as error:
-            if error.thing:
-                raise
-            problem = f"its axis cannot be a direction: {error.problem}"
-            raise ModelError(f'joint "{joint.name}"', problem) from None
-
-    def _constant(self, placement: Placement) -> Placement:
-        rows = (_resolved(row, self._resolve) for row in placement.rotation)
-        return Placement(_resolved(placement.at, self._resolve), tuple(rows))  # type: ignore[arg-type]
-
-    def _compose(self, outer: Placement, inner: Placement) -> Placement:
-        return compose(outer, inner, self._model.snap)
-
-
 def _swept(turned: Vector, original: Vector) -> Vector:
     """Drop rounding dust that a constant rotation leaves where an exact zero belongs."""
     if not all(isinstance(x, (int, float)) for x in (*turned, *original)):
@@ -420,5 +273,6 @@ def _swept(turned: Vector, original: Vector) -> Vector:
     return swept  # type: ignore[return-value]
 
 
-def _resolved(a: Vector, resolve: Resolve) -> Vector:
+def resolved(a: Vector, resolve: Resolve) -> Vector:
+    """A vector of model values as scalars."""
     return (resolve(a[0]), resolve(a[1]), resolve(a[2]))

@@ -24,9 +24,10 @@ if TYPE_CHECKING:
 
     from linegraph.algebra import Algebra
     from linegraph.constraints import Constraint
+    from linegraph.coupling import Coupling
     from linegraph.formulation import Formulation
     from linegraph.joints import Joint
-    from linegraph.model import Coupling, Model
+    from linegraph.model import Model
     from linegraph.planarity import Angle
     from linegraph.vector import Scalar
 

@@ -164,8 +164,8 @@ class Acting:
             for given in (load.force, load.torque)
         )
         if load.axes == BODY:
-            force, torque = times(frame.rotation, force), times(frame.rotation, torque)  # type: ignore[arg-type]
-        return force, torque  # type: ignore[return-value]
+            force, torque = times(frame.rotation, force), times(frame.rotation, torque)
+        return force, torque
 
     def terminal(self, terminal: str) -> tuple[int, Frame]:
         """A terminal's link and its motion."""

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from linegraph.assemblies import add_basement, add_rotor, welded
+from linegraph.assemblies import add_basement, add_rotor, followers_at, locked
 from linegraph.body import GROUND, MASS_CENTER, Body, Placement, inertia_of, unit
-from linegraph.checks import finite, nearest, plain, vector
-from linegraph.choices import COORDINATES, REACTION_AXES, Choices
+from linegraph.checks import finite, plain, vector
+from linegraph.choices import Choices, chosen
 from linegraph.constraints import Blade, Constraint, Driver, Rod, Rolling
 from linegraph.constraints.relation import Relation
+from linegraph.coupling import Coupling
 from linegraph.elements import Damper, Element, Friction, Law, Load, Spring, Stop
 from linegraph.elements.load import BODY, WORLD
 from linegraph.errors import ModelError
-from linegraph.formula import Formula
 from linegraph.joints import (
     Compound,
     Cylindrical,
@@ -44,16 +44,6 @@ STANDARD_GRAVITY: Vector = (0, 0, -9.81)
 SNAP = 1e-11
 
 Acting = TypeVar("Acting", Element, Load)
-
-
-@dataclass(frozen=True)
-class Coupling:
-    """``q_joint = ratio q_master + offset`` between two joints of one freedom each."""
-
-    joint: str
-    master: str
-    ratio: Any = 1
-    offset: Any = 0
 
 
 class Model:
@@ -96,7 +86,7 @@ class Model:
         self.choices = Choices()
         self.outputs: list[Output] = []
         self.warnings: list[str] = []
-        # where a file said what, for errors found later: the file, and a line for each thing
+        # where a file said what, for errors found later
         self.source: str | None = None
         self.places: dict[str, int] = {}
         self._joints: dict[str, Joint] = {}
@@ -199,8 +189,8 @@ class Model:
     def depends_on_time(self) -> bool:
         """Whether a prescribed motion or a law names the time t."""
         values = [value for joint in self.joints for value in _values(joint.drive)]
-        values += [value for element in self.elements for value in element.values()]
-        values += [value for limit in self._constraints.values() for value in limit.values()]
+        acting = (*self._elements.values(), *self._constraints.values())
+        values += [value for component in acting for value in component.values()]
         return any("t" in names_in(value) for value in values)
 
     def body(
@@ -288,7 +278,9 @@ class Model:
             ModelError: the name is taken, or the element has no place or two.
         """
         who = f'{element.kind} "{element.name}"'
-        if any(element.name in taken for taken in (self._elements, self._joints, self._constraints)):
+        if any(
+            element.name in taken for taken in (self._elements, self._joints, self._constraints)
+        ):
             raise ModelError(who, "the name is taken; names of joints and elements are unique")
         if isinstance(element, Element) and (element.between is None) == (element.joint is None):
             raise ModelError(who, "give either between=(tail, head) or joint=...")
@@ -296,25 +288,22 @@ class Model:
         self._elements[element.name] = element
         return element
 
-    def add_constraint(self, constraint: Limit) -> Limit:
+    def relation(self, name: str, rate: Any) -> Relation:
+        """Constrain velocities by an expression that is zero and linear in rates; see `Relation`."""
+        return self.add_constraint(Relation(name, rate))
+
+    def add_constraint(self, limit: Limit) -> Limit:
         """Add a constraint made elsewhere; ``model.rod(...)`` and its siblings are the friendly way.
 
         Raises:
             ModelError: the name is taken.
         """
-        self._add_limit(constraint)
-        return constraint
-
-    def relation(self, name: str, rate: Any) -> Relation:
-        """Constrain velocities by an expression that is zero and linear in rates; see `Relation`."""
-        return self._add_limit(Relation(name, rate))
-
-    def _add_limit(self, limit: Any) -> Any:
         who = f'{limit.kind} "{limit.name}"'
         if any(limit.name in taken for taken in (self._joints, self._elements, self._constraints)):
             raise ModelError(who, "the name is taken; joints, elements and constraints share names")
         finite(limit.values(), who)
-        return self._constraints.setdefault(limit.name, limit)
+        self._constraints[limit.name] = limit
+        return limit
 
     def output(self, name: str, value: Any, unit: str = "", about: str = "") -> Output:
         """Ask for a quantity in the emitted code; see `observation` for what its expression may name.
@@ -330,36 +319,23 @@ class Model:
     def formulation(self, **choices: Any) -> Choices:
         """Choose the tree, the coordinates and how results are shown; see `Choices`.
 
-        Example:
-            >>> Model("arm").formulation(coordinates="absolute").kind("any body")
-            'absolute'
-
         Raises:
             ModelError: there is no such kind of coordinates or of axes.
         """
-        chosen = replace(self.choices, **choices)
-        for kind in (chosen.coordinates, *chosen.of_body.values()):
-            if kind not in COORDINATES:
-                raise ModelError("formulation", f'coordinates "{kind}"; {nearest(kind, COORDINATES)}')
-        if chosen.reactions not in REACTION_AXES:
-            problem = f'reactions "{chosen.reactions}"; {nearest(chosen.reactions, REACTION_AXES)}'
-            raise ModelError("formulation", problem)
-        self.choices = chosen
-        return chosen
+        self.choices = chosen(self.choices, **choices)
+        return self.choices
 
     def rotor(self, name: str, joint: str | Joint, inertia: Any, ratio: Any = 1) -> BodyHandle:
         """Add a motor's rotor behind a gear at a revolute joint: it turns `ratio` times as fast.
 
         A body without mass, with `inertia` (kg m^2) about the joint's axis alone, sits in the joint's tail
-        and follows its coordinate. What that adds to M, and the gyroscopic torques of a rotor carried
-        about, follow like those of any body.
+        and follows its coordinate, with all that a body adds to M and h.
 
         Raises:
             ModelError: the joint is not a revolute joint of this model.
         """
-        return add_rotor(
-            self, name, joint.name if isinstance(joint, Joint) else joint, inertia, ratio
-        )
+        at = joint.name if isinstance(joint, Joint) else joint
+        return add_rotor(self, name, at, inertia, ratio)
 
     def basement(self, position: Any = None, rotation: Any = None) -> BodyHandle:
         """Add the basement: a massless body called "basement" in prescribed motion.
@@ -370,8 +346,6 @@ class Model:
             rotation: ``{"axis": direction, "angle": expression}``, or ``{"rpy": three expressions}`` for
                 turns about ground's x, y, z in this order, or "input" for the latter; default none.
 
-        Raises:
-            ModelError: another form.
         """
         return add_basement(self, position, rotation)
 
@@ -398,21 +372,10 @@ class Model:
         Raises:
             ModelError: no such joint, or it has no coordinate or more than one.
         """
-        who = f'joint "{joint}"'
-        if joint not in self._joints:
-            raise ModelError(who, f"there is no such joint to lock; {nearest(joint, self._joints)}")
-        found = self._joints[joint]
-        if found.freedoms != 1:
-            raise ModelError(who, f"is {found.kind}; only joints of one freedom can be locked")
-        finite((value,), who)
         self._couplings.pop(joint, None)
-        self._joints[joint] = welded(self, found, value)
-        for coupling in list(self.couplings):
-            if coupling.master == joint:
-                if any(isinstance(x, (str, Formula)) for x in (coupling.ratio, coupling.offset)):
-                    problem = f'follows "{joint}" by a text; lock it first, at a value'
-                    raise ModelError(f'joint "{coupling.joint}"', problem)
-                self.lock(coupling.joint, coupling.ratio * value + coupling.offset)
+        self._joints[joint] = locked(self, joint, value)
+        for follower, at in followers_at(self, joint, value):
+            self.lock(follower, at)
 
     def terminals(self) -> dict[str, tuple[str, Placement]]:
         """Every terminal a joint may be connected to: its body and its placement there.

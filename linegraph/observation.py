@@ -1,8 +1,8 @@
 """Named outputs: expressions of edge variables, coordinates, inputs and parameters.
 
-    position(arm.tip).x   velocity(...)   acceleration(...)   angular_velocity(...)   in ground axes
-    force(elbow).z        torque(elbow).x                     of joints and constraints, as in `reactions`
-    across(strut)         through(strut)                      of force elements: x and the tension
+position(arm.tip).x   velocity(...)   acceleration(...)   angular_velocity(...)   in ground axes
+force(elbow).z        torque(elbow).x                     of joints and constraints, as in `reactions`
+across(strut)         through(strut)                      of force elements: x and the tension
 """
 
 from __future__ import annotations
@@ -72,23 +72,24 @@ def observed(
     return found, dynamic
 
 
-def _edge_variable(
-    model: Model, scheme: InverseScheme, kind: str, thing: str, part: str
-) -> Scalar:
+def _edge_variable(model: Model, scheme: InverseScheme, kind: str, thing: str, part: str) -> Scalar:
     """One variable of an edge or a point."""
     if kind in OF_POINTS:
         known = [*model.terminals(), *(f"{body}.mass_center" for body in model.bodies)]
         if thing not in known:
-            raise ModelError("", f'{kind}({thing}): there is no such terminal; {nearest(thing, known)}')
+            raise ModelError(
+                "", f"{kind}({thing}): there is no such terminal; {nearest(thing, known)}"
+            )
         return getattr(scheme.terminal(thing), OF_POINTS[kind])["xyz".index(part)]
     if kind in ("across", "through"):
         elements = {e.name: e for e in model.elements if isinstance(e, Element)}
         if thing not in elements:
-            raise ModelError("", f"{kind}({thing}): there is no such element; {nearest(thing, elements)}")
+            raise ModelError(
+                "", f"{kind}({thing}): there is no such element; {nearest(thing, elements)}"
+            )
         x, y = scheme.tension(elements[thing])
         return x if kind == "across" else y
     if thing not in scheme.joints:
         problem = f"{kind}({thing}): there is no such joint or constraint; {nearest(thing, scheme.joints)}"
         raise ModelError("", problem)
     return getattr(scheme.reaction(thing), kind)["xyz".index(part)]
-

@@ -68,7 +68,7 @@ def arms(
 ) -> list[Arm]:
     """Every joint's motion at (q, v)."""
     q, v = tuple(q), tuple(v)
-    found = []
+    found: list[Arm] = []
     for link in tree.links:
         set_label(algebra, f"joint {link.joint.name}")
         positions, rates = coordinates(link.place, q, v)

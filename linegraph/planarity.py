@@ -92,7 +92,7 @@ class _Survey:
         near = self._poses[near_body]
         at = product(near.axes, near_frame)
         axes = product(at, transpose(far_frame))
-        axis = times(at, tuple(self._resolve(x) for x in joint.axis))  # type: ignore[arg-type]
+        axis = times(at, tuple(self._resolve(x) for x in joint.axis))
         turning = isinstance(joint, Revolute | Universal | Spherical)
         level = far_body in self._wanted and turning and joint.drive is None
         level = level and joint.name not in self._coupled

@@ -125,6 +125,7 @@ class Listing:
         count: the name of their number; empty for those without count and array.
         heading: what they are, in the plural.
         sizes: the results that have so many entries.
+        groups: in the head of a file, one row each for so many quantities as there are for one of these.
     """
 
     symbol: str
@@ -132,6 +133,7 @@ class Listing:
     heading: str
     quantities: tuple[Quantity, ...]
     sizes: tuple[str, ...] = ()
+    groups: tuple[Quantity, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -44,6 +44,7 @@ def module_of(
     folded: bool,
     about: Iterable[str],
     wanted: Iterable[str] = (),
+    only: Iterable[str] | None = None,
 ) -> Module:
     """All functions of a model.
 
@@ -53,13 +54,15 @@ def module_of(
         folded: whether parameters become numbers.
         about: paragraphs for the head of the file.
         wanted: further functions to emit, of `ON_REQUEST`.
+        only: nothing but these of `PROGRAMS`; default all.
 
     Raises:
         ModelError: a parameter has no value, or a closed model cannot be assembled.
     """
     parameters = _parameters(derivation)
     functions = Functions(derivation, folded or not parameters)
-    chosen = [key for key in PROGRAMS if key not in ON_REQUEST or key in tuple(wanted)]
+    asked = (*only,) if only is not None else (*(set(PROGRAMS) - set(ON_REQUEST)), *wanted)
+    chosen = [key for key in PROGRAMS if key in asked]
     programs = tuple(program for key in chosen for program in PROGRAMS[key](functions))
     functions.dag.release()
     tree = functions.tree
@@ -82,6 +85,7 @@ class Functions:
     """What several functions share: the DAG, the tree over it, M and h."""
 
     def __init__(self, derivation: Derivation, folded: bool) -> None:
+        """Nothing is derived before a function asks for it."""
         self.dag = Dag()
         self.derivation = derivation
         self.model = derivation.model
@@ -242,7 +246,11 @@ def _forward_dynamics(f: Functions) -> Program:
     With solid bodies M cannot become singular, so articulated inertias need no scale to judge pivots by;
     where some link is not solid, the factors do the judging.
     """
-    if f.tree.coupled or f.tree.levelled or not all(is_solid(link) for link in f.tree.links if link.numeric):
+    if (
+        f.tree.coupled
+        or f.tree.levelled
+        or not all(is_solid(link) for link in f.tree.links if link.numeric)
+    ):
         return _factored(f)
     articulated = _articulated(f)
     return articulated if articulated.operations < _factored_cost(f) else _factored(f)

@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING
 
 from linegraph.algebra import Floats
 from linegraph.errors import ModelError
-from linegraph.kinematics import KinematicTree, Link, kinematic_tree
 from linegraph.mass_matrix import composites, mass_matrix
 from linegraph.orthogonality import arms
 from linegraph.parameters import sample_values
+from linegraph.walk import kinematic_tree
 
 if TYPE_CHECKING:
     from linegraph.formulation import Formulation
     from linegraph.joints import Moments
+    from linegraph.kinematics import KinematicTree, Link
     from linegraph.model import Model
 
 SINGULAR = 1e-13
@@ -31,7 +32,9 @@ def require_regular(model: Model, formulation: Formulation) -> None:
         ModelError: names the joint.
     """
     anywhere = Floats(t=0.37, u=_Anything())
-    tree = kinematic_tree(model, formulation, anywhere, sample_values(model.parameters.values(), anywhere))
+    tree = kinematic_tree(
+        model, formulation, anywhere, sample_values(model.parameters.values(), anywhere)
+    )
     if not tree.velocities:
         raise ModelError(f'model "{model.name}"', "no joint can move: there is nothing to derive")
     if tree.closed or all(is_solid(link) for link in tree.links):

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from linegraph.closure import equations
 from linegraph.domains import DOMAINS
 from linegraph.parameters import Parameter
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
+    from linegraph.assembly import Assembly
     from linegraph.derive import Derivation
     from linegraph.graph import IntegerMatrix
     from linegraph.kinematics import KinematicTree
@@ -32,11 +34,12 @@ def show(derivation: Derivation, heading: Callable[[str], str] = str) -> str:
     sections = (
         (f"model {derivation.model.name}", _summary(derivation, tree)),
         ("bodies", _bodies(derivation.model)),
-        ("joints", _joints(derivation.model)),
+        ("joints", _joints(derivation)),
         ("domains", _domains(derivation)),
         ("graph: edges tail -> head, the same in translation and rotation", _graph(derivation)),
         ("tree: links from ground outward", _tree(tree)),
         ("coordinates", _coordinates(tree)),
+        *((("constraints", _constraints(derivation)),) if tree.closed else ()),
         ("cutset equations [U A] Y = 0: A, branches x chords", _matrix(derivation.topology.cutset)),
         (
             "circuit equations [B U] X = 0: B, chords x branches",
@@ -46,6 +49,30 @@ def show(derivation: Derivation, heading: Callable[[str], str] = str) -> str:
     return "\n".join(
         line for title, lines in sections for line in (heading(title), *_indented(lines), "")
     )
+
+
+def assembled(derivation: Derivation, found: Assembly) -> str:
+    """A position that closes all loops, and what the constraints are worth there."""
+    rows = [
+        (f"q[{k}]", quantity.name, f"{value:.12g}", quantity.unit)
+        for k, (quantity, value) in enumerate(
+            zip(derivation.structure.positions, found.q, strict=True)
+        )
+    ]
+    held = len(found.unique)
+    counts = (
+        f"{len(derivation.structure.velocities)} velocities, {held} constraints, {found.rank} independent: "
+        f"{found.freedoms} degrees of freedom"
+    )
+    lines = [*_table(rows), counts]
+    if found.redundant:
+        names = [
+            equation.multiplier.name
+            for equation, one in zip(equations(derivation.structure), found.unique, strict=True)
+            if not one
+        ]
+        lines.append(f"{found.redundant} redundant; not unique: {', '.join(names)}")
+    return "\n".join(lines) + "\n"
 
 
 def _summary(derivation: Derivation, tree: KinematicTree) -> Lines:
@@ -70,11 +97,12 @@ def _bodies(model: Model) -> Lines:
     return _table(rows)
 
 
-def _joints(model: Model) -> Lines:
+def _joints(derivation: Derivation) -> Lines:
+    model, chords = derivation.model, derivation.formulation.chords
     rows = [("joint", "type", "tail -> head", "axis", "remark")]
     coupled = {c.joint: c for c in model.couplings}
     for joint in model.joints:
-        remark = ""
+        remark = "chord: closes a loop" if joint.name in chords else ""
         if joint.name in coupled:
             c = coupled[joint.name]
             remark = f"= {_text(c.ratio)} {c.master} + {_text(c.offset)}"
@@ -120,6 +148,19 @@ def _coordinates(tree: KinematicTree) -> Lines:
         for symbol, quantities in listed.items()
         for i, quantity in enumerate(quantities)
     )
+
+
+def _constraints(derivation: Derivation) -> Lines:
+    found = derivation.assembled
+    rows = [("row", "multiplier", "unit", "")]
+    for k, (equation, one) in enumerate(
+        zip(equations(derivation.structure), found.unique, strict=True)
+    ):
+        multiplier = equation.multiplier
+        remark = "" if one else "not unique"
+        rows.append((str(k), multiplier.name, multiplier.unit, remark))
+    counts = f"{found.rank} independent, {found.redundant} redundant, {found.freedoms} degrees of freedom"
+    return [*_table(rows), counts]
 
 
 def _matrix(matrix: IntegerMatrix) -> Lines:

@@ -83,7 +83,11 @@ def relations(
     """Of each relation ``a v = b`` the coefficients a, the right-hand side b and γ of ``a v̇ = γ``.
 
     Args:
-        model, tree, algebra, parameters, state: as of `scope`.
+        model: as of `scope`.
+        tree: as of `scope`.
+        algebra: as of `scope`.
+        parameters: as of `scope`.
+        state: as of `scope`.
         rates: q̇.
 
     Raises:
@@ -117,7 +121,7 @@ def relations(
 def _require_no_input(model: Model, relation: Relation) -> None:
     inputs = {declared.name for declared in model.inputs}
     for name in sorted(names_in(relation.rate) & inputs):
-        problem = f"names the input {name}, whose derivative is not known; prescribe a joint's motion by input"
+        problem = (
+            f"names the input {name}, whose derivative is not known; prescribe a joint's motion"
+        )
         raise ModelError(f'relation "{relation.name}"', problem)
-
-

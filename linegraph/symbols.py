@@ -8,14 +8,18 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import sympy
 
 from linegraph import orthogonality
+from linegraph.checks import nearest
+from linegraph.closure import Chords, equations
 from linegraph.errors import ModelError
 from linegraph.expression import Dag, Node
 from linegraph.functions import ARITY
+from linegraph.inverse_scheme import InverseScheme
 from linegraph.loads import Applied, applied
 from linegraph.mass_matrix import mass_matrix
 from linegraph.paper import PaperMatrices, paper_matrices
 from linegraph.paper_print import PrintedMatrices, printed_matrices
 from linegraph.parameters import valued
+from linegraph.scope import relations
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -70,6 +74,7 @@ class Symbolic:
 
     def __init__(self, derivation: Derivation) -> None:
         """Derive over sympy; nothing is simplified until asked for."""
+        self._derivation = derivation
         self._model = derivation.model
         positions, rates, inputs = _names(derivation.structure, derivation.model.parameters)
         self.algebra = Sympy({"q": positions, "v": rates, "u": inputs})
@@ -96,6 +101,82 @@ class Symbolic:
             self.tree, self.algebra, self._arms, applied=self._applied
         )
         return sympy.Matrix(rows).applyfunc(simplified)
+
+    @cached_property
+    def constraints(self) -> Expr:
+        """φ(q) as a column Matrix: zero where all loops are closed."""
+        return sympy.Matrix(self._chords.position()).applyfunc(simplified)
+
+    @cached_property
+    def constraint_jacobian(self) -> Expr:
+        """J(q), constraints x velocities; the multipliers' names are in `multipliers`."""
+        rows = self._chords.jacobian()
+        return sympy.Matrix(len(rows), len(self.v), [x for row in rows for x in row]).applyfunc(
+            simplified
+        )
+
+    @cached_property
+    def constraint_bias(self) -> Expr:
+        """γ of J v̇ = γ as a column Matrix."""
+        return sympy.Matrix(self._chords.bias()).applyfunc(simplified)
+
+    @property
+    def multipliers(self) -> Expr:
+        """λ as a column Matrix of symbols: the through variables of the chords."""
+        return sympy.Matrix([sympy.Symbol(e.multiplier.name) for e in equations(self.tree)])
+
+    def reaction(self, joint: str) -> tuple[Expr, Expr]:
+        """Force and torque that a joint exerts on its head, one edge alone, v̇ as symbols ``a_name``.
+
+        Resolved as `Choices.reactions` says, about the head's origin; with loops λ are `multipliers`.
+
+        Raises:
+            ModelError: there is no such joint or constraint.
+        """
+        if joint not in self.tree.ends:
+            raise ModelError(f'joint "{joint}"', f"is not there; {nearest(joint, self.tree.ends)}")
+        wrench = self._scheme.reaction(joint)
+        force, torque = (sympy.Matrix(part).applyfunc(simplified) for part in wrench)
+        return force, torque
+
+    def across(self, edge: str) -> tuple[Expr, Expr]:
+        """Velocity and angular velocity across an edge, in ground axes.
+
+        Raises:
+            ModelError: there is no such edge.
+        """
+        found = self._scheme.across()
+        if edge not in found:
+            raise ModelError(f'edge "{edge}"', f"is not there; {nearest(edge, found)}")
+        linear, angular = (sympy.Matrix(part).applyfunc(simplified) for part in found[edge])
+        return linear, angular
+
+    @cached_property
+    def a(self) -> Expr:
+        """v̇ as a column Matrix of symbols."""
+        return sympy.Matrix([sympy.Symbol(f"a_{q.name}") for q in self.tree.velocities])
+
+    @cached_property
+    def _chords(self) -> Chords:
+        state = (tuple(self.q), tuple(self.v))
+        rates = orthogonality.coordinate_rates(self.tree, self.algebra, *state)
+        found = relations(self._model, self.tree, self.algebra, self._parameters, state, rates)
+        return Chords(self.tree, self.algebra, self._arms, self._parameters, found)
+
+    @cached_property
+    def _scheme(self) -> InverseScheme:
+        multipliers = zip(equations(self.tree), self.multipliers, strict=True)
+        return InverseScheme(
+            self._derivation,
+            self.tree,
+            self.algebra,
+            self._parameters,
+            self._arms,
+            self._chords,
+            (tuple(self.q), tuple(self.v)),
+            tuple(self.a),
+            list(multipliers),
+        )
 
     @cached_property
     def paper_matrices(self) -> PaperMatrices:

@@ -107,8 +107,8 @@ def quaternion_of(rotation: Matrix) -> list[float]:
 
     Example:
         >>> from linegraph.rotation import from_quaternion
-        >>> quaternion_of(from_quaternion(0.0, 0.6, 0.0, 0.8))
-        [0.0, 0.6, 0.0, 0.8]
+        >>> quaternion_of(from_quaternion(0.0, 1.0, 0.0, 0.0))
+        [0.0, 1.0, 0.0, 0.0]
     """
     r = rotation
     squares = [
@@ -126,4 +126,3 @@ def quaternion_of(rotation: Matrix) -> list[float]:
     row = rows[max(range(4), key=squares.__getitem__)]
     length = math.copysign(math.hypot(*row), row[3] if row[3] != 0 else 1.0)
     return [x / length for x in row]
-

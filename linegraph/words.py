@@ -1,5 +1,4 @@
-"""The builder's words: handles of bodies, and methods made from the registers of joints, elements and
-constraints."""
+"""The builder's words: handles of bodies, and methods made from the registers of components."""
 
 from __future__ import annotations
 
@@ -16,12 +15,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from linegraph.constraints import Constraint
+    from linegraph.constraints.relation import Relation
     from linegraph.elements import Element
     from linegraph.model import Model
 
 Ask = ParamSpec("Ask")
 Kind = TypeVar("Kind", bound=Joint)
-Limit = TypeVar("Limit", bound="Constraint")
+Limit = TypeVar("Limit", bound="Constraint | Relation")
 
 
 @dataclass(frozen=True)

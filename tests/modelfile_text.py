@@ -163,3 +163,44 @@ between = ["ground", "arm"]
 axis = [0, 1, 0]
 """
 """A sound model: cases append to it, from line 15 on, or replace a line."""
+
+LOOP = """\
+name = "loop"
+[parameters]
+a = { value = 0.1, unit = "m" }
+[inputs]
+push = { unit = "N" }
+[frame.pivot]
+at = [0.35, 0, 0]
+[body.crank]
+mass = 0.2
+inertia = [1e-4, 1e-4, 1e-4]
+frame.tip.at = ["a", 0, 0]
+[body.coupler]
+mass = 0.8
+inertia = [1e-2, 1e-2, 1e-2]
+frame.tip.at = [0.4, 0, 0]
+[body.rocker]
+mass = 0.6
+inertia = [5e-3, 5e-3, 5e-3]
+frame.tip.at = [0.3, 0, 0]
+[revolute.motor]
+between = ["ground", "crank"]
+axis = [0, 0, 1]
+start = 0.8
+[revolute.elbow]
+between = ["crank.tip", "coupler"]
+axis = [0, 0, 1]
+start = 0
+[revolute.swing]
+between = ["ground.pivot", "rocker"]
+axis = [0, 0, 1]
+start = 1.2
+[revolute.knee]
+between = ["coupler.tip", "rocker.tip"]
+axis = [0, 0, 1]
+[spring.coil]
+joint = "swing"
+stiffness = 2
+"""
+"""A four-bar linkage, sound as well: knee is cut."""

@@ -12,7 +12,7 @@ import pytest
 
 from linegraph.algebra import Floats
 from linegraph.errors import ModelError
-from linegraph.formula import Formula, parse
+from linegraph.formula import VARIABLES, VECTORS, Formula, parse, variable_of
 
 VALUES = {"m": 2.0, "l": 0.5, "x": 3.0, "der(x)": -1.5, "beta": 0.25, "S": 7.0, "E": 11.0}
 
@@ -203,3 +203,133 @@ def test_random_expressions_agree_with_python(seed: int) -> None:
 
 def test_a_formula_is_data() -> None:
     assert parse("a + 1") == Formula("+", (Formula("name", ("a",)), Formula("number", (1,))))
+
+
+# ---- variables of edges and points
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("position(arm).x", ["position(arm).x"]),
+        ("position(arm.tip).y", ["position(arm.tip).y"]),
+        ("velocity( arm . tip ) . z", ["velocity(arm.tip).z"]),
+        ("2*force(knee).x**2 - a", ["force(knee).x", "a"]),
+        ("across(strut) + through(strut)", ["across(strut)", "through(strut)"]),
+        ("sqrt(torque(x).x/der(x))", ["torque(x).x", "der(x)"]),
+        ("acceleration(x.y).z*angular_acceleration(x).x", None),
+        ("-angular_velocity(x).x", ["angular_velocity(x).x"]),
+    ],
+)
+def test_variables_are_names(text: str, names: list[str] | None) -> None:
+    found = list(parse(text).names())
+    assert found == names or (names is None and len(found) == 2)
+    values = {name: 1.5 + k for k, name in enumerate(found)}
+    assert math.isfinite(float(parse(text).evaluate(Floats(), values)))
+    for name in found:
+        assert list(parse(name).names()) == [name]
+
+
+def test_a_variable_is_taken_apart_as_it_was_written() -> None:
+    assert variable_of("position(arm.tip).x") == ("position", "arm.tip", "x")
+    assert variable_of("across(strut)") == ("across", "strut", "")
+    for other in ("der(x)", "x", "sin(x)", "positions(x).x"):
+        assert variable_of(other) is None
+    assert set(VARIABLES) - set(VECTORS) == {"across", "through"}
+
+
+def test_a_variable_is_data() -> None:
+    expected = Formula("variable", ("position", "arm.tip", "x"))
+    assert parse("position(arm.tip).x") == expected
+
+
+def test_an_unknown_variable_is_named() -> None:
+    with pytest.raises(ModelError, match=r"position\(arm\)\.x is not known here; known: m"):
+        parse("m + position(arm).x").evaluate(Floats(), {"m": 1})
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ("position(a)", r"position is a vector: add .x, .y or .z"),
+        ("force(a) + 1", r"force is a vector: add .x, .y or .z"),
+        ("position(a).w", "components x, y and z, not w"),
+        ("position(a).real", "components x, y and z, not real"),
+        ("position(a).__class__", "components x, y and z, not __class__"),
+        ("position().x", r"position takes one name, as in position\(arm.tip\)"),
+        ("position(a, b).x", "takes one name"),
+        ("position(1).x", "takes one name"),
+        ("position(a + b).x", "takes one name"),
+        ("position('a').x", "takes one name"),
+        ("position(a=b).x", "takes one name"),
+        ("position(*a).x", "takes one name"),
+        ("position(a.b.c).x", "takes one name"),
+        ("position(a().b).x", "takes one name"),
+        ("position(a[0]).x", "takes one name"),
+        ("position(position(a).x).x", "takes one name"),
+        ("position(a).x.y", "may stand here"),
+        ("position(a).x(1)", "may stand here"),
+        ("position(a)(b)", "may stand here"),
+        ("position.x", "may stand here"),
+        ("a.b", "may stand here"),
+        ("a.b.c", "may stand here"),
+        ("(1).real", "may stand here"),
+        ("(1 + a).x", "may stand here"),
+        ("sin(a).x", "may stand here"),
+        ("across(a).x", "may stand here"),
+        ("(position)(a).y.z", "may stand here"),
+        ("os.system(a).x", "may stand here"),
+        ("across()", "across takes one name"),
+        ("through(a, b)", "through takes one name"),
+        ("across(sin(a))", "across takes one name"),
+        ("der(position(a).x)", "der takes one name"),
+        ("position(a).x(", "not an expression"),
+        ("a**position(b).x", "an exponent must be"),
+    ],
+)
+def test_what_is_no_variable_is_refused_with_a_hint(text: str, hint: str) -> None:
+    with pytest.raises(ModelError, match=hint) as caught:
+        parse(text)
+    assert "column" in str(caught.value) or "not an expression" in str(caught.value)
+    assert len(str(caught.value)) < 400
+
+
+@pytest.mark.parametrize(
+    "thing", ["__class__", "__import__", "a.__dict__", "self", "print", "_", "x.__init__", "None_"]
+)
+def test_hostile_names_of_variables_are_looked_up_and_nothing_else(thing: str) -> None:
+    """A name is a text: it is found in the mapping or it is unknown."""
+    for kind in ("position", "force"):
+        formula = parse(f"{kind}({thing}).x")
+        assert list(formula.names()) == [f"{kind}({thing}).x"]
+        with pytest.raises(ModelError, match="is not known here"):
+            formula.evaluate(Floats(), {})
+        assert formula.evaluate(Floats(), {f"{kind}({thing}).x": 2}) == 2
+
+
+def test_a_name_cannot_look_like_a_variable() -> None:
+    """What stands in brackets is a name: brackets of its own would end it."""
+    for text in ("position(a).x).x", "position(a.x)", "position(a).x .y", "position(a;b).x"):
+        with pytest.raises(ModelError):
+            parse(text)
+
+
+@pytest.mark.parametrize("letters", [1_000, 9_000])
+def test_long_names_of_variables_are_bounded(letters: int) -> None:
+    name = "a" * letters
+    start = time.process_time()
+    assert list(parse(f"position({name}).x").names()) == [f"position({name}).x"]
+    with pytest.raises(ModelError) as caught:
+        parse(f"position({name})")
+    assert len(str(caught.value)) < 400
+    assert time.process_time() - start < 1.0
+
+
+@pytest.mark.parametrize("count", [200, 3_000])
+def test_chains_of_attributes_are_refused_at_once(count: int) -> None:
+    start = time.process_time()
+    for text in ("a" + ".x" * count, "position(a" + ".x" * count + ").x", "position(a).x" * count):
+        with pytest.raises(ModelError) as caught:
+            parse(text)
+        assert len(str(caught.value)) < 400
+    assert time.process_time() - start < 1.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import random
 import re
 import subprocess
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 from modelfile_text import SMALL, ZOO
 
+from linegraph.emission import render
 from linegraph.errors import LinegraphError
 from linegraph.model import Model
 from linegraph.modelfile import parse
@@ -212,6 +214,51 @@ def test_nothing_is_executed(payload: str, place: str, tmp_path: Path) -> None:
         assert place != "expression"
     else:
         assert str(found).startswith("m.toml:")
+
+
+ASKED = [
+    "position(__import__('os')).x",
+    "position(arm.__class__).x",
+    "position(arm).__class__",
+    "position(arm).x.__class__",
+    "force(__builtins__).x",
+    "across(open('canary', 'w'))",
+    "through(hinge.__globals__)",
+    "der(__class__)",
+    "velocity(arm.tip).x if open('canary', 'w') else 0",
+    "position(arm.mass_center.real).x",
+]
+"""What would reach into things if it were ever run."""
+
+
+def code_of(line: str) -> list[str]:
+    """What is emitted for a model with this output, comments and docstrings left out."""
+    files = render(parse(f"{SMALL}[outputs]\n{line}\n".encode(), "m.toml"))
+    text = [re.sub(r"/\*.*?\*/", "", files[f"small.{end}"], flags=re.DOTALL) for end in "hc"]
+    return [*text, ast.dump(ast.Module(ast.parse(files["small.py"]).body[1:], []))]
+
+
+@pytest.mark.parametrize("place", ["value", "table", "unit", "about", "name"])
+@pytest.mark.parametrize("payload", [*PAYLOADS, *ASKED])
+def test_nothing_is_executed_that_outputs_ask_for(payload: str, place: str) -> None:
+    """As an expression or a name it is refused; as a text it stays in comments."""
+    quoted = '"' + payload.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
+    line = {
+        "value": f"y = {quoted}",
+        "table": f"y = {{ value = {quoted} }}",
+        "unit": f"y = {{ value = 1, unit = {quoted} }}",
+        "about": f"y = {{ value = 1, about = {quoted} }}",
+        "name": f"{quoted} = 1",
+    }[place]
+    try:
+        found: list[str] | LinegraphError = code_of(line)
+    except LinegraphError as error:
+        found = error
+    if isinstance(found, LinegraphError):
+        assert re.match(r"m\.toml:\d+: \[outputs\] ", str(found))
+    else:
+        assert place in ("unit", "about")
+        assert found == code_of("y = 1")
 
 
 @pytest.mark.parametrize("payload", PAYLOADS[:8])

@@ -13,13 +13,12 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
-from linegraph.vector import Matrix, Scalar, Vector
-
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from linegraph.algebra import Algebra
     from linegraph.program import Quantity
+    from linegraph.vector import Matrix, Scalar, Vector
 
     Resolve = Callable[[Any], Scalar]
     """From a model value to a scalar."""

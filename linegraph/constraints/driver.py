@@ -50,7 +50,12 @@ class Driver(Constraint):
     def equations(self) -> tuple[tuple[Quantity, bool], ...]:
         """A force along each axis that is given."""
         return tuple(
-            (Quantity(f"{self.name}_f{c}", "N", f"force {c} of driver {self.name}, in the tail's axes"), True)
+            (
+                Quantity(
+                    f"{self.name}_f{c}", "N", f"force {c} of driver {self.name}, in the tail's axes"
+                ),
+                True,
+            )
             for c, value in zip("xyz", (self.x, self.y, self.z), strict=True)
             if value is not None
         )

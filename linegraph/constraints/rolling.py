@@ -48,7 +48,12 @@ class Rolling(Constraint):
     def equations(self) -> tuple[tuple[Quantity, bool], ...]:
         """Normal, along and across."""
         return tuple(
-            (Quantity(f"{self.name}_{end}", "N", f"{about} of rolling {self.name}, on the wheel"), touching)
+            (
+                Quantity(
+                    f"{self.name}_{end}", "N", f"{about} of rolling {self.name}, on the wheel"
+                ),
+                touching,
+            )
             for end, about, touching in (
                 ("normal", "normal force", True),
                 ("along", "force along the track", False),

@@ -98,11 +98,11 @@ class _Builder:
         )
         read_inputs(self._data.get("inputs", {}), self._spot("inputs"), self._names, self._model)
         self._gravity()
+        self._basement()
         for kind, name in self._tables("body"):
             self._body(kind, name)
         for kind, name in self._tables("frame"):
             self._ground_frame(kind, name)
-        self._basement()
         self._joints()
         for kind, name in self._tables(*ELEMENTS, "load"):
             self._element(kind, name)
@@ -189,7 +189,9 @@ class _Builder:
         elif kind in SHARED:
             if name in owners:
                 first = f"[{owners[name]}.{name}] in line {self._report.line((owners[name], name))}"
-                spot.error(f"the name is taken by {first}; joints, elements and constraints share their names")
+                spot.error(
+                    f"the name is taken by {first}; joints, elements and constraints share their names"
+                )
                 self._refused.add((kind, name))
             owners.setdefault(name, kind)
 
