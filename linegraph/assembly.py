@@ -77,16 +77,63 @@ def assemble(
     return search.judged(search.position(start))
 
 
+def consistent(
+    derivation: Derivation, numeric: Numeric, draw: random.Random
+) -> tuple[list[float], list[float]]:
+    """A random state that satisfies the constraints, near the assembly.
+
+    Args:
+        derivation: a model with constraints.
+        numeric: it at the time and for the inputs and parameters wanted.
+        draw: where randomness comes from.
+    """
+    search = _Search(derivation, {}, draw.randrange(2**31), numeric)
+    start = derivation.assembled.q
+    near = list(start)
+    search.close(near)
+    beside = search.beside(near, 0.2) or search.beside(near, 0.05)
+    q = near if beside is None else beside
+    v = [draw.uniform(-1, 1) for _ in search.tree.velocities]
+    rates = search.np.array(numeric.constraint_rates(q, v), float)
+    J = search.np.array(numeric.constraint_jacobian(q), float).reshape(len(rates), len(v))
+    step = search.np.linalg.lstsq(J, rates, rcond=DEPENDENT)[0]
+    return q, [float(x - dx) for x, dx in zip(v, step, strict=True)]
+
+
+def saddle(
+    M: Sequence[Sequence[float]],
+    right: Sequence[float],
+    J: Sequence[Sequence[float]],
+    bias: Sequence[float],
+) -> tuple[list[float], list[float]]:
+    """v̇ and λ of ``M v̇ = right + J^T λ``, ``J v̇ = bias``, λ of least norm where it is not unique."""
+    import numpy
+
+    n, m = len(right), len(bias)
+    rows = numpy.zeros((n + m, n + m))
+    rows[:n, :n] = M
+    rows[n:, :n] = numpy.array(J, float).reshape(m, n)
+    rows[:n, n:] = -rows[n:, :n].T
+    found = numpy.linalg.lstsq(rows, numpy.array([*right, *bias], float), rcond=1e-11)[0]
+    return found[:n].tolist(), found[n:].tolist()
+
+
 class _Search:
     """One search, over floats."""
 
-    def __init__(self, derivation: Derivation, hold: dict[str, float], seed: int) -> None:
+    def __init__(
+        self,
+        derivation: Derivation,
+        hold: dict[str, float],
+        seed: int,
+        numeric: Numeric | None = None,
+    ) -> None:
         import numpy
 
         self.np = numpy
         self.derivation = derivation
         self.draw = random.Random(seed)
-        self.numeric: Numeric = derivation.numeric()
+        self.numeric: Numeric = numeric or derivation.numeric()
         self.tree: KinematicTree = self.numeric.tree
         self.equations = equations(self.tree)
         names = [quantity.name for quantity in self.tree.positions]
@@ -105,7 +152,7 @@ class _Search:
             q = [x + self.draw.uniform(-spread, spread) for x in start]
             for k, value in self.held.items():
                 q[k] = value
-            gap = self._close(q)
+            gap = self.close(q)
             if gap < CLOSED and not self._flipped(q):
                 return q
             if best is None or gap < best[0]:
@@ -116,7 +163,7 @@ class _Search:
     def judged(self, q: list[float]) -> Assembly:
         """The position with what the constraints are worth around it."""
         np = self.np
-        places = [q, *(x for _ in range(2) if (x := self._beside(q)) is not None)]
+        places = [q, *(x for _ in range(2) if (x := self.beside(q)) is not None)]
         best = max(self._rank(place) for place in places)
         at = next(place for place in places if self._rank(place) == best)
         J = self._jacobian(at)
@@ -160,7 +207,7 @@ class _Search:
                 at, _ = coordinates(link.place, tuple(q), (0.0,) * len(self.tree.velocities))
                 q[own.index] += q[own.index] - at[0]
 
-    def _close(self, q: list[float]) -> float:
+    def close(self, q: list[float]) -> float:
         """Move q onto the constraints as far as that goes; the largest violation that remains."""
         np = self.np
         self.tree.normalise(q)
@@ -231,12 +278,12 @@ class _Search:
 
     # -- what is found there
 
-    def _beside(self, q: list[float]) -> list[float] | None:
+    def beside(self, q: list[float], spread: float = 0.05) -> list[float] | None:
         """Another place that closes the loops, near the first."""
-        near = [x + self.draw.uniform(-0.05, 0.05) for x in q]
+        near = [x + self.draw.uniform(-spread, spread) for x in q]
         for k, value in self.held.items():
             near[k] = value
-        return near if self._close(near) < CLOSED and not self._flipped(near) else None
+        return near if self.close(near) < CLOSED and not self._flipped(near) else None
 
     def _rank(self, q: list[float]) -> int:
         return self._rank_of(self._jacobian(q))

@@ -2,7 +2,9 @@
 
 Three routes to M and h meet at random states: the program that is emitted, run as it is; the same derivation
 over floats; and the paper's matrices multiplied out. And the power balance: along the motion, the rate of
-kinetic and gravitational energy, differentiated exactly, is the power of all that is applied.
+kinetic and gravitational energy, differentiated exactly, is the power of all that is applied. And the audit:
+through times across, summed over all edges of each subspace, is zero. With constraints the states satisfy
+them, and their Jacobian and bias are compared, too.
 """
 
 from __future__ import annotations
@@ -13,20 +15,23 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph import orthogonality
 from linegraph.algebra import Floats
+from linegraph.assembly import consistent, saddle
+from linegraph.closure import equations
+from linegraph.edges import powers
 from linegraph.factorization import solve
 from linegraph.interpretation import run
+from linegraph.inverse_scheme import InverseScheme
 from linegraph.jets import Jet, Jets
-from linegraph.loads import applied
+from linegraph.loads import applied, efforts
 from linegraph.mass_matrix import mass_matrix
 from linegraph.paper import paper_matrices
-from linegraph.parameters import Parameter, valued
 from linegraph.program import Program
 from linegraph.programs import module_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from linegraph.derive import Derivation
+    from linegraph.derive import Derivation, Numeric
     from linegraph.kinematics import KinematicTree
     from linegraph.program import Module
     from linegraph.vector import Scalar
@@ -44,18 +49,20 @@ class Findings:
 
     Attributes:
         program: of the emitted program from the float reference.
-        paper: of the paper's matrices from the float reference.
+        paper: of the paper's matrices from the float reference; None where a link turns against ground.
         power: of the power balance; None where a prescribed motion does work on the system.
+        audit: of the sums of through times across, relative to the largest power.
     """
 
     program: float
-    paper: float
+    paper: float | None
     power: float | None
+    audit: float
 
     @property
     def good(self) -> bool:
         """Whether all differences are rounding."""
-        found = (self.program, self.paper, self.power or 0.0)
+        found = (self.program, self.paper or 0.0, self.power or 0.0, self.audit)
         return all(difference < TOLERANCE for difference in found)
 
 
@@ -67,16 +74,24 @@ def check(derivation: Derivation, seed: int = 0) -> Findings:
     """
     draw = random.Random(seed)
     module = module_of(derivation, "checked", folded=False, about=())
-    worst = [0.0, 0.0, 0.0]
-    driven = any(place.drive for place in _state(derivation, draw).tree.layout.places.values())
+    worst = [0.0, 0.0, 0.0, 0.0]
+    tree = derivation.structure
+    driven = any(place.drive for place in tree.layout.places.values())
+    driven = driven or any(any(drives) for drives in tree.layout.drives.values())
     for _ in range(STATES):
         state = _state(derivation, draw)
         M, h = state.reference()
         worst[0] = max(worst[0], state.difference(M, h, *state.emitted(module)))
-        worst[1] = max(worst[1], state.difference(M, h, *state.printed()))
+        if tree.closed:
+            worst[0] = max(worst[0], state.constraint_difference(module))
+        if not tree.levelled:
+            worst[1] = max(worst[1], state.difference(M, h, *state.printed()))
+        a, lam = state.solved(M, h)
         if not driven:
-            worst[2] = max(worst[2], state.power_defect(M, h))
-    return Findings(worst[0], worst[1], None if driven else worst[2])
+            worst[2] = max(worst[2], state.power_defect(a))
+        worst[3] = max(worst[3], state.audit(a, lam))
+    paper = None if tree.levelled else worst[1]
+    return Findings(worst[0], paper, None if driven else worst[2], worst[3])
 
 
 def _state(derivation: Derivation, draw: random.Random) -> _State:
@@ -87,17 +102,17 @@ def _state(derivation: Derivation, draw: random.Random) -> _State:
         if not p.derived
     }
     count = len(derivation.structure.inputs)
-    algebra = Floats(t=draw.uniform(0, 1), u=[draw.uniform(-1, 1) for _ in range(count)], p=values)
-
-    def given(parameter: Parameter) -> float:
-        return values[parameter.name]
-
-    parameters = valued(model.parameters.values(), algebra, given)
-    tree = derivation.tree(algebra, parameters)
-    q = [draw.uniform(-1, 1) for _ in tree.positions]
-    tree.normalise(q)
-    v = [draw.uniform(-1, 1) for _ in tree.velocities]
-    return _State(derivation, algebra, parameters, tree, q, v)
+    u = [draw.uniform(-1, 1) for _ in range(count)]
+    numeric = derivation.numeric(values, draw.uniform(0, 1), u)
+    tree = numeric.tree
+    if tree.closed:
+        q, v = consistent(derivation, numeric, draw)
+    else:
+        q = [draw.uniform(-1, 1) for _ in tree.positions]
+        tree.normalise(q)
+        v = [draw.uniform(-1, 1) for _ in tree.velocities]
+    algebra = Floats(t=numeric.t, u=u, p=values)
+    return _State(derivation, algebra, dict(numeric.parameters), tree, numeric, q, v)
 
 
 @dataclass(frozen=True)
@@ -108,6 +123,7 @@ class _State:
     algebra: Floats
     parameters: dict[str, Scalar]
     tree: KinematicTree
+    numeric: Numeric
     q: Vector
     v: Vector
 
@@ -120,13 +136,56 @@ class _State:
 
     def emitted(self, module: Module) -> tuple[list[Vector], Vector]:
         """M and h by the program that would be emitted."""
-        program = next(
-            p for p in module.programs if isinstance(p, Program) and p.name == "equations"
-        )
-        given = {"q": self.q, "v": self.v, **self.algebra.arguments}
-        M, h = run(program, given)
+        M, h = self.run(module, "equations")
         size = len(self.v)
         return [M[i * size : (i + 1) * size] for i in range(size)], h
+
+    def run(self, module: Module, name: str) -> list[Vector]:
+        """The results of one of the programs that would be emitted."""
+        program = next(p for p in module.programs if isinstance(p, Program) and p.name == name)
+        return run(program, {"q": self.q, "v": self.v, **self.algebra.arguments})
+
+    def constraint_difference(self, module: Module) -> float:
+        """J and γ of the emitted program and of the float reference."""
+        (J,), (gam,) = (
+            self.run(module, name) for name in ("constraint_jacobian", "constraint_bias")
+        )
+        reference = [x for row in self.numeric.constraint_jacobian(self.q) for x in row]
+        bias = self.numeric.constraint_bias(self.q, self.v)
+        return max(_relative(reference, J), _relative(bias, gam))
+
+    def solved(self, M: list[Vector], h: Vector) -> tuple[Vector, Vector]:
+        """v̇ and λ."""
+        right = [force - bias for force, bias in zip(self.forces(), h, strict=True)]
+        if not self.tree.closed:
+            return solve(M, right, self.tree.outward).unknowns, []
+        J = self.numeric.constraint_jacobian(self.q)
+        return saddle(M, right, J, self.numeric.constraint_bias(self.q, self.v))
+
+    def forces(self) -> Vector:
+        """Q: joint efforts and what inputs drive."""
+        crossed = orthogonality.arms(self.tree, self.algebra, self.q, self.v)
+        acting = self._applied(crossed, driven=True)
+        active = orthogonality.generalised_forces(self.tree, self.algebra, crossed, acting)
+        chords = self.numeric.chords(self.q, self.v)
+        return [float(x) for x in efforts(self.tree, self.algebra, chords, active)]
+
+    def audit(self, acceleration: Vector, multipliers: Vector) -> float:
+        """What the powers of all edges sum up to in each subspace, relative to the largest of them."""
+        crossed = orthogonality.arms(self.tree, self.algebra, self.q, self.v)
+        scheme = InverseScheme(
+            self.derivation,
+            self.tree,
+            self.algebra,
+            self.parameters,
+            crossed,
+            self.numeric.chords(self.q, self.v),
+            (tuple(self.q), tuple(self.v)),
+            acceleration,
+            list(zip(equations(self.tree), multipliers, strict=True)),
+        )
+        found, sums = powers(scheme.edges())
+        return float(max(map(abs, sums)) / (1 + max(map(abs, found.values()))))
 
     def printed(self) -> tuple[list[Vector], Vector]:
         """M and h by the paper's matrices; what elements add is projected by the float reference."""
@@ -137,20 +196,14 @@ class _State:
         )
         return matrices.A, [-b - load for b, load in zip(matrices.B, loads, strict=True)]
 
-    def power_defect(self, M: list[Vector], h: Vector) -> float:
+    def power_defect(self, acceleration: Vector) -> float:
         """dE/dt less the power of everything applied, relative to the power."""
         crossed = orthogonality.arms(self.tree, self.algebra, self.q, self.v)
-        active, passive = (
-            orthogonality.generalised_forces(
-                self.tree, self.algebra, crossed, self._applied(crossed, driven=driven)
-            )
-            for driven in (True, False)
+        passive = orthogonality.generalised_forces(
+            self.tree, self.algebra, crossed, self._applied(crossed, driven=False)
         )
-        for velocity, place in self.tree.layout.efforts:
-            active[velocity] = active[velocity] + self.algebra.symbol("u", place)
-        right = [force - bias for force, bias in zip(active, h, strict=True)]
-        acceleration = solve(M, right, self.tree.outward).unknowns
-        power = sum(v * (a + p) for v, a, p in zip(self.v, active, passive, strict=True))
+        both = zip(self.v, self.forces(), passive, strict=True)
+        power = sum(v * (active + own) for v, active, own in both)
         return float(abs(self._energy_rate(acceleration) - power) / (1 + abs(power)))
 
     def _energy_rate(self, acceleration: Sequence[float]) -> float:
@@ -185,18 +238,25 @@ def report(derivation: Derivation, findings: Findings, heading: Callable[[str], 
     """The findings for a reader."""
     tree = derivation.structure
     lines = [heading(f"model {derivation.model.name}")]
-    lines.append(f"  {len(tree.velocities)} degrees of freedom, {len(tree.inputs)} inputs")
+    freedoms = derivation.assembled.freedoms if tree.closed else len(tree.velocities)
+    lines.append(f"  {freedoms} degrees of freedom, {len(tree.inputs)} inputs")
     listed = (("q", tree.positions), ("v", tree.velocities), ("u", tree.inputs))
     for symbol, quantities in listed:
         lines += [f"  {symbol}[{i}]  {x.name}  {x.unit}" for i, x in enumerate(quantities)]
     lines.append(heading(f"at {STATES} random states, worst relative differences"))
     lines.append(f"  emitted program and float reference   {findings.program:.1e}")
-    lines.append(f"  paper's matrices and float reference  {findings.paper:.1e}")
+    if findings.paper is None:
+        lines.append(
+            "  paper's matrices                      not judged: angles measured from ground"
+        )
+    else:
+        lines.append(f"  paper's matrices and float reference  {findings.paper:.1e}")
     if findings.power is None:
         lines.append(
             "  power balance                         not judged: prescribed motion does work"
         )
     else:
         lines.append(f"  power balance                         {findings.power:.1e}")
+    lines.append(f"  audit: sum of through times across    {findings.audit:.1e}")
     lines.append("good" if findings.good else "NOT GOOD: please report this model")
     return "\n".join(lines) + "\n"

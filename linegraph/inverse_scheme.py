@@ -338,7 +338,6 @@ class InverseScheme:
         for terminal, (body, _) in self._terminals.items():
             if body in self._model.bodies:
                 through = received.get(terminal, NOTHING).turned()
-                frame = "" if terminal == body else f".{terminal.rpartition('.')[2]}"
                 center = self.center(body)
-                arms[f"{body}/arm{frame}"] = self._edge(through, center, self.terminal(terminal))
+                arms[f"{body}/arm{terminal.removeprefix(body)}"] = self._edge(through, center, self.terminal(terminal))
         return arms

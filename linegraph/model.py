@@ -338,7 +338,7 @@ class Model:
         return add_rotor(self, name, at, inertia, ratio)
 
     def basement(self, position: Any = None, rotation: Any = None) -> BodyHandle:
-        """Add the basement: a massless body called "basement" in prescribed motion.
+        """Add a massless body called "basement" in prescribed motion.
 
         Args:
             position: of its origin in ground axes (m): three expressions of t, each of which, or all at

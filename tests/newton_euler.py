@@ -115,6 +115,26 @@ def inverse_dynamics(tree: Tree, q: Array, v: Array, a: Array) -> Array:
     return total
 
 
+def reactions(tree: Tree, q: Array, v: Array, a: Array) -> dict[str, Array]:
+    """What each joint exerts on its head, (2, 3): force, and torque about the head frame's origin, there.
+
+    Everything that the bodies beyond a joint need passes through it.
+    """
+    links, motions = outward_links(tree), body_motions(tree, q, v)
+    needed = {name: np.zeros((2, 3)) for name in motions}
+    for body, center in mass_centers(tree, q, v):
+        needed[body.name] += _needed_wrench(body, center, v, a, tree.gravity)
+    found = {}
+    for link in reversed(links):
+        needed[link.near] += needed[link.far]
+        joint, sign = link.joint, 1.0 if link.outward else -1.0
+        frame = carried(motions[joint.head], v, joint.head_at, joint.head_rotation)
+        force, moment = sign * needed[link.far]
+        torque = moment - np.cross(frame.origin, force)
+        found[joint.name] = np.array([force, torque]) @ frame.rotation
+    return found
+
+
 def forward_dynamics(tree: Tree, q: Array, v: Array, tau: Array) -> Array:
     """Accelerations v' (nv,) under the generalised forces tau (nv,)."""
     a = np.linalg.solve(mass_matrix(tree, q, v), tau - bias(tree, q, v))

@@ -317,6 +317,21 @@ STARTS = {
     ),
 }
 
+MOTIONS = {
+    "without_a_rate_at_first": bad(
+        driven(LOOP, "motor", "0.8 + sqrt(t)"), "[revolute.motor]", "motor"
+    ),
+    "without_a_value_at_first": bad(
+        driven(LOOP, "motor", "0.8 + 1/t"), "[revolute.motor]", "motor"
+    ),
+    "of_no_angle": bad(driven(LOOP, "motor", "atan2(0*t, 0)"), "[revolute.motor]", "motor"),
+    "outside_the_domain": bad(
+        LOOP + '[rod.strut]\nbetween = ["ground", "rocker.tip"]\nlength = "log(t)"\n',
+        "[rod.strut]",
+        *("strut", "log(0.0) is not a finite number"),
+    ),
+}
+
 OUTPUTS = {
     "mass_centre_of_ground": bad(
         LOOP + '[outputs]\ny = "position(ground.mass_center).x"\n',
@@ -343,6 +358,7 @@ CASES = {
         "independent": INDEPENDENT,
         "relations": RELATIONS,
         "starts": STARTS,
+        "motions": MOTIONS,
         "outputs": OUTPUTS,
     }.items()
     for name, case in cases.items()

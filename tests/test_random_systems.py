@@ -29,6 +29,7 @@ EXACT = 1e-12  # relative to 1 + the largest expected entry; measured 1.3e-13
 SOLVED = 1e-10  # forward dynamics at the same scale; measured 1.1e-11
 SAME = 3e-14  # C and Python; measured 3e-15
 SAME_SOLVED = 1e-12  # their forward dynamics; measured 3e-14
+AUDIT = 1e-11  # of the sums of through times across, relative to the largest power
 BALANCE = 5e-9  # of power, relative; measured 4e-10
 
 
@@ -72,7 +73,8 @@ def test_emitted_python_agrees_with_newton_euler(first: int, tmp_path: Path) -> 
     for seed in range(first, first + BATCH):
         system = systems.random_system(seed)
         name = system.model.name
-        emitted = load(render(system.model, languages=["python"]), name, tmp_path)
+        files = render(system.model, languages=["python"], functions=("power",))
+        emitted = load(files, name, tmp_path)
         rng = np.random.default_rng([seed, 1])
         states = regular_states(rng, system, STATES)
         tau = rng.normal(size=(STATES, len(system.effort_places)))
@@ -84,6 +86,8 @@ def test_emitted_python_agrees_with_newton_euler(first: int, tmp_path: Path) -> 
         torque = call(emitted, "inverse_dynamics", given)
         acceleration = call(emitted, "forward_dynamics", given)
         energy = call(emitted, "energy", given)
+        powers, sums = call(emitted, "power", given)
+        assert np.abs(sums).max() <= AUDIT * (1 + np.abs(powers).max()), seed
         mass = np.broadcast_to(mass, (STATES, *mass.shape[-2:]))
         assert np.array_equal(mass, np.swapaxes(mass, -1, -2))
         for k, state in enumerate(states):

@@ -22,6 +22,9 @@ TOLERANCE = (
     1e-10  # relative to 1 + the largest expected entry; measured 3e-12, forward dynamics 4e-11
 )
 
+EXACT = 1e-12  # of reactions; measured 6e-14
+AUDIT = 1e-11  # of sums over all edges, relative to the largest power
+
 
 def draw(seed: int) -> tuple[trees.Tree, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """A tree of 1 to 12 bodies and its states q, v, a, tau, one a row."""
@@ -49,7 +52,8 @@ def inputs_of(tree: trees.Tree, tau: np.ndarray) -> tuple[np.ndarray, np.ndarray
 def test_emitted_python_agrees_with_newton_euler(first: int, tmp_path: Path) -> None:
     for seed in range(first, first + BATCH):
         tree, q, v, a, tau = draw(seed)
-        files = render(model_of(tree, f"tree{seed}"), languages=["python"])
+        model = model_of(tree, f"tree{seed}")
+        files = render(model, languages=["python"], functions=("power",))
         emitted = load(files, f"tree{seed}", tmp_path)
         u, efforts = inputs_of(tree, tau)
 
@@ -57,6 +61,10 @@ def test_emitted_python_agrees_with_newton_euler(first: int, tmp_path: Path) -> 
         torque = emitted.inverse_dynamics(q, v, a)
         acceleration = emitted.forward_dynamics(q, v, u)
         energy = emitted.energy(q, v)
+        found = emitted.reactions_at(q, v, a).reshape(STATES, -1, 2, 3)
+        powers, sums = emitted.power(q, v, u)
+        names = [name[:-3] for name in emitted.REACTION_NAMES[::6]]
+        assert np.abs(sums).max() <= AUDIT * (1 + np.abs(powers).max()), seed
 
         assert np.array_equal(mass, np.swapaxes(mass, -1, -2))
         assert np.array_equal(mass, emitted.mass_matrix(q))
@@ -72,6 +80,11 @@ def test_emitted_python_agrees_with_newton_euler(first: int, tmp_path: Path) -> 
             assert error(torque[k], expected) < TOLERANCE, seed
             expected = np.linalg.solve(expected_mass, efforts[k] - expected_bias)
             assert error(acceleration[k], expected) < TOLERANCE, seed
+        for k in range(0, STATES, 4):
+            reactions = oracle.reactions(tree, q[k], v[k], a[k])
+            scale = 1 + max(np.abs(x).max() for x in reactions.values())
+            for name, wrench in zip(names, found[k], strict=True):
+                assert np.abs(wrench - reactions[name]).max() < EXACT * scale, (seed, name)
         for k in range(2):
             assert error(energy[k, 0], oracle.kinetic_energy(tree, q[k], v[k])) < TOLERANCE
             rates = emitted.coordinate_rates(q[k], v[k])
