@@ -11,9 +11,10 @@ from linegraph.errors import ModelError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-JOINT, ABSOLUTE, ABSOLUTE_ANGLE = COORDINATES = ("joint", "absolute", "absolute-angle")
-"""Which edges carry a body's coordinates: its joint, its inertia edge, or its joint for the place and its
-inertia edge for the orientation."""
+COORDINATES = ("joint", "absolute", "absolute-angle", "automatic")
+JOINT, ABSOLUTE, ABSOLUTE_ANGLE, AUTOMATIC = COORDINATES
+"""Which edges carry a body's coordinates: its joint; its inertia edge; its joint for the place and its
+inertia edge for the orientation; or the last for bodies that turn in a plane, the first for all others."""
 
 HEAD, TAIL, GROUND_AXES = REACTION_AXES = ("head", "tail", "ground")
 """The axes in which joint reactions are resolved."""

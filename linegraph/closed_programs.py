@@ -250,8 +250,9 @@ def remarks(f: Functions) -> tuple[str, ...]:
     found = assembly(f)
     cut = ", ".join(dict.fromkeys(e.component for e in f.equations))
     text = (
-        f"{len(f.equations)} constraints come from the chords of the tree ({cut}); {found.rank} are "
-        f"independent, so there are {found.freedoms} degrees of freedom."
+        f"{len(f.equations)} constraints come from the chords of the tree ({cut}), "
+        "M vdot + h = Q + J^T lam with J vdot = gam; "
+        f"{found.rank} are independent: {freedoms_text(found.freedoms)}."
     )
     if found.redundant:
         names = [
@@ -262,6 +263,11 @@ def remarks(f: Functions) -> tuple[str, ...]:
             f"and the reactions that depend on them, are not unique: {', '.join(names)}."
         )
     return (text,)
+
+
+def freedoms_text(count: int) -> str:
+    """How many degrees of freedom there are, in words."""
+    return f"{count} degree{'' if count == 1 else 's'} of freedom"
 
 
 def _routine(

@@ -18,21 +18,15 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from linegraph.constraints.base import Constraint, Pose, Prescribed, Row
-from linegraph.frames import Frame, Pair, along_velocities, frames, seated
+from linegraph.frames import Frame, Pair, along_velocities, frames, relative_motion, seated, seen
 from linegraph.jets import Jet, Jets, lifted
 from linegraph.joints.base import (
     TORQUES,
-    Along,
-    Restriction,
-    Square,
-    Thread,
-    Unturned,
-    Upright,
 )
 from linegraph.orthogonality import Arm, set_label
 from linegraph.parameters import resolver
 from linegraph.program import Quantity
-from linegraph.rotation import product
+from linegraph.rows import rows_of, where
 from linegraph.vector import (
     ZERO,
     Matrix,
@@ -41,7 +35,6 @@ from linegraph.vector import (
     add,
     cross,
     dot,
-    negate,
     scale,
     subtract,
     times,
@@ -138,7 +131,7 @@ class Chords:
             tail, head = (Pose(f.rotation, f.origin) for f in self.ends(closure.component.name))
             drive = [None if x is None else Prescribed(x.x, x.dx) for x in closure.drive]
             resolve = resolver(self._algebra, self._parameters)
-            found[closure.component.name] = _rows(
+            found[closure.component.name] = rows_of(
                 closure, self._algebra, resolve, tail, head, drive
             )
         return found
@@ -225,7 +218,7 @@ class Chords:
         jets = Jets(self._algebra)
         base = resolver(self._algebra, self._parameters)
         drive = [None if x is None else Prescribed(x, Jet(x.dx, x.ddx, 0)) for x in closure.drive]
-        moving = _rows(
+        moving = rows_of(
             closure, jets, lambda x: lifted(base(x)), _in_motion(tail), _in_motion(head), drive
         )
         u, w = relative_motion(tail, head)
@@ -253,7 +246,9 @@ def _quantities(closure: Closure) -> list[tuple[Quantity, bool]]:
         counts[letter] += 1
         name = f"{component.name}_{letter}{counts[letter]}"
         what, unit = ("torque", "N*m") if turning else ("force", "N")
-        about = f"reaction {what} {counts[letter]} of joint {component.name} on its head"
+        about = (
+            f"reaction {what} of joint {component.name} on its head{where(restriction, component)}"
+        )
         found.append((Quantity(name, unit, about), True))
     for given, velocity in zip(closure.drive, component.velocities(), strict=False):
         if given is not None:
@@ -263,111 +258,10 @@ def _quantities(closure: Closure) -> list[tuple[Quantity, bool]]:
     return found
 
 
-def _rows(
-    closure: Closure,
-    algebra: Algebra,
-    resolve: Any,
-    tail: Pose,
-    head: Pose,
-    drive: Sequence[Prescribed | None],
-) -> tuple[Row, ...]:
-    """All rows of a chord over an algebra."""
-    component = closure.component
-    if isinstance(component, Constraint):
-        return component.rows(algebra, resolve, tail, head, drive)
-    found = [_row(restriction, algebra, tail, head) for restriction in closure.restrictions]
-    if any(x is not None for x in drive):
-        found += _driven(component, algebra, tail, head, drive)
-    return tuple(found)
-
-
-def _row(restriction: Restriction, algebra: Algebra, tail: Pose, head: Pose) -> Row:
-    """A reaction direction at a place of tail and head."""
-    line = subtract(head.origin, tail.origin)
-    if isinstance(restriction, Along):
-        direction = times(tail.rotation, restriction.direction)
-        return Row(dot(direction, line), direction, ZERO)
-    if isinstance(restriction, Square):
-        a, b = times(tail.rotation, restriction.tail), times(head.rotation, restriction.head)
-        position = (dot(a, b) - restriction.cosine) / restriction.sine
-        return Row(position, ZERO, scale(1 / restriction.sine, cross(b, a)))
-    if isinstance(restriction, Upright):
-        return _upright(restriction.axis, tail, head)
-    if isinstance(restriction, Unturned):
-        return _unturned(restriction.axis, tail, head)
-    assert isinstance(restriction, Thread)
-    return _thread(restriction.advance, algebra, tail, head)
-
-
-def _upright(axis: int, tail: Pose, head: Pose) -> Row:
-    """The head's z along the tail's."""
-    x, y, z = transpose(tail.rotation)
-    leaning = transpose(head.rotation)[2]
-    lean = -dot(y, leaning) if axis == 0 else dot(x, leaning)
-    return Row(2 * lean / (1 + dot(z, leaning)), ZERO, (x, y)[axis])
-
-
-def _unturned(axis: int, tail: Pose, head: Pose) -> Row:
-    """No turn at all: the vector of the rotation from tail to head, of length 2 tan(angle / 2)."""
-    a, b = transpose(tail.rotation), transpose(head.rotation)
-    j, k = (axis + 1) % 3, (axis + 2) % 3
-    cosines = 1 + (dot(a[0], b[0]) + dot(a[1], b[1]) + dot(a[2], b[2]))
-    return Row(2 * (dot(a[k], b[j]) - dot(a[j], b[k])) / cosines, ZERO, a[axis])
-
-
-def _thread(advance: Scalar, algebra: Algebra, tail: Pose, head: Pose) -> Row:
-    """A screw, whatever number of full turns it has made."""
-    axis = times(tail.rotation, (0, 0, 1))
-    shift = dot(axis, subtract(head.origin, tail.origin))
-    torque = negate(scale(advance, axis))
-    turned = product(transpose(tail.rotation), head.rotation)
-    angle = algebra.function("atan2", turned[1][0], turned[0][0])
-    return Row(advance * _wrapped(algebra, shift / advance - angle), axis, torque)
-
-
-def _wrapped(algebra: Algebra, angle: Scalar) -> Scalar:
-    """An angle less the full turns in it."""
-    return algebra.function("atan2", algebra.sin(angle), algebra.cos(angle))
-
-
-def _driven(
-    joint: Joint,
-    algebra: Algebra,
-    tail: Pose,
-    head: Pose,
-    drive: Sequence[Prescribed | None],
-) -> list[Row]:
-    """Rows that prescribe a chord's own coordinates; of angles, full turns do not count."""
-    rotation, displacement = seen(tail, head)
-    measured = joint.measured(algebra, rotation, displacement)
-    duals = joint.duals(algebra, rotation, displacement)
-    found = []
-    for x, (m, f), given, quantity in zip(measured, duals, drive, joint.positions(), strict=True):
-        if given is not None:
-            behind = x - given.x
-            position = _wrapped(algebra, behind) if quantity.unit == "rad" else behind
-            force, torque = times(head.rotation, f), times(head.rotation, m)
-            found.append(Row(position, force, torque, given.dx))
-    return found
-
-
-def seen(tail: Pose | Frame, head: Pose | Frame) -> tuple[Matrix, Vector]:
-    """Head from tail: rotation, and displacement in the tail's axes."""
-    inward = transpose(tail.rotation)
-    return product(inward, head.rotation), times(inward, subtract(head.origin, tail.origin))
-
-
 def _duals(algebra: Algebra, joint: Joint, tail: Frame, head: Frame) -> list[tuple[Vector, Vector]]:
     """A joint's unit efforts in ground axes: (torque, force)."""
     duals = joint.duals(algebra, *seen(tail, head))
     return [(times(head.rotation, m), times(head.rotation, f)) for m, f in duals]
-
-
-def relative_motion(tail: Frame, head: Frame) -> tuple[Vector, Vector]:
-    """Velocity of the head's origin as seen from the tail, and relative angular velocity."""
-    carried = cross(tail.angular, subtract(head.origin, tail.origin))
-    u = subtract(subtract(head.linear, tail.linear), carried)
-    return u, subtract(head.angular, tail.angular)
 
 
 def _in_motion(frame: Frame) -> Pose:

@@ -10,6 +10,8 @@ the user says otherwise, the tree is the one of least weight, by this order:
     2. the same joint in translation and in rotation
     3. joints in which something acts (an effort, an element), or that have a start, are rather branches
     4. shallow trees: a loop is cut where it is farthest from ground
+    5. with coordinates "automatic", absolute angles where bodies turn in a plane: an inertia edge instead of
+       the hinge in rotation. By default coordinates are those of joints, as their names say
 
 Of equal joints that with the most freedoms is cut by the first rule itself: it weighs most.
 """
@@ -22,7 +24,7 @@ from typing import TYPE_CHECKING
 
 from linegraph.body import GROUND
 from linegraph.checks import nearest
-from linegraph.choices import ABSOLUTE, ABSOLUTE_ANGLE
+from linegraph.choices import ABSOLUTE, ABSOLUTE_ANGLE, AUTOMATIC
 from linegraph.domains import ROTATION, TRANSLATION
 from linegraph.elements import Element
 from linegraph.errors import ModelError
@@ -140,8 +142,14 @@ def _depths(projection: Projection) -> dict[str, int]:
 
 def _level(model: Model, translation: Topology) -> dict[str, Angle]:
     """The joints beyond which a body's orientation is measured from ground."""
-    wanted = {name for name in model.bodies if model.choices.kind(name) == ABSOLUTE_ANGLE}
-    return absolute_angles(model, translation, wanted) if wanted else {}
+    kinds = {name: model.choices.kind(name) for name in model.bodies}
+    wanted = {name for name, kind in kinds.items() if kind in (ABSOLUTE_ANGLE, AUTOMATIC)}
+    found = absolute_angles(model, translation, wanted) if wanted else {}
+    return {
+        joint: angle
+        for joint, angle in found.items()
+        if kinds[angle.body] == ABSOLUTE_ANGLE or angle.less is not None
+    }
 
 
 def _rotation(

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from linegraph.algebra import Algebra
+    from linegraph.constraints.base import Pose
     from linegraph.kinematics import KinematicTree, Seat
     from linegraph.layout import Freedom
 
@@ -179,3 +180,16 @@ def _meeting(tree: KinematicTree, crossed: Sequence[Arm], head: int, tail: int) 
     for other in inward[: inward.index(link)] if link in inward else inward:
         level = level or crossed[other].level
     return link, level
+
+
+def seen(tail: Pose | Frame, head: Pose | Frame) -> tuple[Matrix, Vector]:
+    """Head from tail: rotation, and displacement in the tail's axes."""
+    inward = vector.transpose(tail.rotation)
+    return product(inward, head.rotation), times(inward, subtract(head.origin, tail.origin))
+
+
+def relative_motion(tail: Frame, head: Frame) -> tuple[Vector, Vector]:
+    """Velocity of the head's origin as seen from the tail, and relative angular velocity."""
+    carried = cross(tail.angular, subtract(head.origin, tail.origin))
+    u = subtract(subtract(head.linear, tail.linear), carried)
+    return u, subtract(head.angular, tail.angular)

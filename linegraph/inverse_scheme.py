@@ -339,5 +339,7 @@ class InverseScheme:
             if body in self._model.bodies:
                 through = received.get(terminal, NOTHING).turned()
                 center = self.center(body)
-                arms[f"{body}/arm{terminal.removeprefix(body)}"] = self._edge(through, center, self.terminal(terminal))
+                arms[f"{body}/arm{terminal.removeprefix(body)}"] = self._edge(
+                    through, center, self.terminal(terminal)
+                )
         return arms

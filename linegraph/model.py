@@ -86,8 +86,7 @@ class Model:
         self.choices = Choices()
         self.outputs: list[Output] = []
         self.warnings: list[str] = []
-        # where a file said what, for errors found later
-        self.source: str | None = None
+        self.source: str | None = None  # the file, and where it said what, for errors found later
         self.places: dict[str, int] = {}
         self._joints: dict[str, Joint] = {}
         self._couplings: dict[str, Coupling] = {}

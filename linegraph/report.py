@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from linegraph.closed_programs import freedoms_text
 from linegraph.closure import equations
 from linegraph.domains import DOMAINS
 from linegraph.parameters import Parameter
@@ -62,7 +63,7 @@ def assembled(derivation: Derivation, found: Assembly) -> str:
     held = len(found.unique)
     counts = (
         f"{len(derivation.structure.velocities)} velocities, {held} constraints, {found.rank} independent: "
-        f"{found.freedoms} degrees of freedom"
+        f"{freedoms_text(found.freedoms)}"
     )
     lines = [*_table(rows), counts]
     if found.redundant:
@@ -159,7 +160,8 @@ def _constraints(derivation: Derivation) -> Lines:
         multiplier = equation.multiplier
         remark = "" if one else "not unique"
         rows.append((str(k), multiplier.name, multiplier.unit, remark))
-    counts = f"{found.rank} independent, {found.redundant} redundant, {found.freedoms} degrees of freedom"
+    freedoms = freedoms_text(found.freedoms)
+    counts = f"{found.rank} independent, {found.redundant} redundant: {freedoms}"
     return [*_table(rows), counts]
 
 

@@ -9,8 +9,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from linegraph.closure import relative_motion, seen
-from linegraph.frames import GROUND_FRAME, Frame, frames, seated
+from linegraph.frames import GROUND_FRAME, Frame, frames, relative_motion, seated, seen
 from linegraph.joints import Free, Spherical
 from linegraph.kinematics import Seat
 from linegraph.orthogonality import arms

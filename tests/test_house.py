@@ -49,6 +49,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("kinematics",),
     ("factorization", "orthogonality", "walk"),
     ("articulated", "frames", "mass_matrix"),
+    ("rows",),
     ("closure",),
     ("scope", "transfer"),
     ("loads",),

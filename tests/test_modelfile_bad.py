@@ -589,7 +589,7 @@ FORMULATION = {
     "unknown_key": choice("trees = []", 'unknown key "trees"; did you mean "tree"?'),
     "tree_is_a_word": choice('tree = "hinge"', "a list of joints", 'not "hinge"'),
     "tree_of_numbers": choice("tree = [1]", "a list of joints"),
-    "coordinates_of_a_kind": choice('coordinates = "cartesian"', '"absolute-angle" is wanted'),
+    "coordinates_of_a_kind": choice('coordinates = "cartesian"', '"absolute-angle"', '"cartesian"'),
     "coordinates_are_true": choice("coordinates = true", "not true"),
     "coordinates_of_a_list": choice('coordinates = ["absolute"]', "not a list of 1"),
     "coordinates_of_no_body": choice(

@@ -147,6 +147,16 @@ def test_absolute_angles_show_differences_only() -> None:
     assert sympy.simplify(found.mass_matrix - book) == sympy.zeros(2, 2)
 
 
+def test_automatic_coordinates_take_absolute_angles_in_planes_only() -> None:
+    model = planar_chain(3)
+    tip = model.body("tip", mass=1, inertia=(1, 1, 1))
+    model.revolute("wrist", between=("b2.end", tip), axis=(0, 1, 0))
+    model.formulation(coordinates="automatic")
+    derivation = lg.derive(model)
+    assert set(derivation.formulation.level) == {"j0", "j1", "j2"}
+    assert not derivation.structure.closed
+
+
 def four_bar() -> lg.Model:
     from linegraph import modelfile
 

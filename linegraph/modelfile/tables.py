@@ -235,7 +235,7 @@ FORMULATION = Table(
         ),
         "coordinates": Field(
             Coordinates(),
-            '"joint" (default), "absolute" or "absolute-angle"; or one for each body named',
+            '"joint" (default), "absolute", "absolute-angle" or "automatic"; or one for each body named',
         ),
         "independent": Field(
             Listed("coordinates"),
