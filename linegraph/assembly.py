@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING, Any
 from linegraph.closure import equations
 from linegraph.errors import ModelError
 from linegraph.joints import Joint
+from linegraph.joints.base import BY_INPUT
 from linegraph.layout import coordinates
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from linegraph.closure import Chords
+    from linegraph.closure import Chords, Equation
     from linegraph.derive import Derivation, Numeric
     from linegraph.kinematics import Closure, KinematicTree
 
@@ -142,6 +143,22 @@ class _Search:
                 known = ", ".join(names[:8])
                 raise ModelError(f'coordinate "{name}"', f"is none of this tree; known: {known}")
         self.held = {names.index(name): float(value) for name, value in hold.items()}
+        held = [e for e in self.equations if e.holonomic]
+        # what an input prescribes is wherever that input says: any position will do
+        self.sought = [k for k, e in enumerate(held) if not self._by_input(e)]
+
+    def _by_input(self, equation: Equation) -> bool:
+        """Whether a constraint prescribes a motion that comes from inputs."""
+        closure = self.tree.ends[equation.component]
+        component = closure.component
+        if isinstance(component, Joint):
+            q = component.positions()
+            drive = component.drive
+            given = list(drive) if isinstance(drive, (tuple, list)) else [drive] * len(q)
+        else:
+            given = [x for x, _ in component.prescribed() if x is not None]
+        place = equation.place - len(closure.restrictions)
+        return 0 <= place < len(given) and given[place] == BY_INPUT
 
     def position(self, given: Sequence[float] | None) -> list[float]:
         """The first place found."""
@@ -152,13 +169,15 @@ class _Search:
             q = [x + self.draw.uniform(-spread, spread) for x in start]
             for k, value in self.held.items():
                 q[k] = value
-            gap = self.close(q)
-            if gap < CLOSED and not self._flipped(q):
-                return q
+            try:
+                gap = self.close(q)
+                if gap < CLOSED and not self._flipped(q):
+                    return q
+            except (ArithmeticError, ValueError, ModelError):
+                continue  # two ends of a rod coincide, or the like: begin elsewhere
             if best is None or gap < best[0]:
                 best = (gap, q)
-        assert best is not None
-        raise self._refusal(best[1])
+        raise self._refusal(best[1] if best else None)
 
     def judged(self, q: list[float]) -> Assembly:
         """The position with what the constraints are worth around it."""
@@ -216,7 +235,7 @@ class _Search:
         for _ in range(STEPS):
             if gap < CLOSED * 1e-3:
                 break
-            J = self._jacobian(q)[: len(phi)]
+            J = self._jacobian(q)[self.sought]
             step = -np.linalg.lstsq(J, phi, rcond=1e-10)[0]
             largest = float(np.abs(step).max(initial=0.0))
             step *= min(1.0, LARGEST_STEP / max(largest, 1e-300))
@@ -242,7 +261,7 @@ class _Search:
         return moved
 
     def _position(self, q: list[float]) -> Any:
-        return self.np.array(self.numeric.constraints(q), float)
+        return self.np.array(self.numeric.constraints(q), float)[self.sought]
 
     def _jacobian(self, q: list[float]) -> Any:
         """J, held coordinates left out of it."""
@@ -283,7 +302,10 @@ class _Search:
         near = [x + self.draw.uniform(-spread, spread) for x in q]
         for k, value in self.held.items():
             near[k] = value
-        return near if self.close(near) < CLOSED and not self._flipped(near) else None
+        try:
+            return near if self.close(near) < CLOSED and not self._flipped(near) else None
+        except (ArithmeticError, ValueError, ModelError):
+            return None
 
     def _rank(self, q: list[float]) -> int:
         return self._rank_of(self._jacobian(q))
@@ -343,10 +365,14 @@ class _Search:
         pairs = zip(self.tree.velocities, motion, strict=True)
         return [quantity.name for quantity, x in pairs if x > 0.1 * motion.max()]
 
-    def _refusal(self, q: list[float]) -> ModelError:
+    def _refusal(self, q: list[float] | None) -> ModelError:
         """What to tell where no position closes the loops: the worst chord and its circuit."""
+        if q is None:
+            names = dict.fromkeys(e.component for e in self.equations)
+            problem = "are not defined at any position tried; give `start` values near one"
+            return ModelError(f"constraints {_quoted(names)}", problem)
         phi = self.np.abs(self._position(q))
-        worst = self.equations[int(phi.argmax())]
+        worst = self.equations[self.sought[int(phi.argmax())]]
         circuit = self.derivation.circuit_of(worst.component)
         kind = self.tree.ends[worst.component].component.kind
         held = f" with {_quoted([self.tree.positions[k].name for k in self.held])} held" * bool(

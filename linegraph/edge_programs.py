@@ -13,6 +13,7 @@ from linegraph.edges import (
     reaction_quantities,
 )
 from linegraph.inverse_scheme import InverseScheme
+from linegraph.layout import EFFORT_UNITS
 from linegraph.observation import observed
 from linegraph.program import Argument, Call, Listing, Program, Quantity, Result, Routine
 
@@ -60,6 +61,16 @@ def reactions(f: Functions) -> tuple[Program | Routine, ...]:
     return at, _after_dynamics(f, "reactions", about, (result,))
 
 
+def drives(f: Functions) -> tuple[Program | Routine, ...]:
+    """The driving forces of joints in prescribed motion."""
+    found = _scheme(f, f.symbols("a")).drives()
+    if not found:
+        return ()
+    result = Result("D", (len(found),), tuple(found.values()), "driving forces and torques")
+    about = "Driving forces: the effort that each prescribed coordinate takes, under the inputs u."
+    return (_after_dynamics(f, "drives", about, (result,)),)
+
+
 def power(f: Functions) -> tuple[Program | Routine, ...]:
     """Through times across of every edge, and its sums."""
     found, sums = powers(_scheme(f, f.symbols("a")).edges())
@@ -104,6 +115,13 @@ def listings(f: Functions, chosen: Sequence[str]) -> tuple[Listing, ...]:
         axes = reaction_axes(f.model)
         heading = f"reactions: of each joint force and torque x, y, z on its head, in {axes} axes"
         found.append(Listing("reaction", "NR", heading, quantities, ("R",), groups))
+    driven = _scheme(f, f.symbols("a")).drives() if "drives" in chosen else {}
+    if driven:
+        known = {q.name: q for joint in f.model.joints for q in joint.velocities()}
+        quantities = tuple(
+            Quantity(name, EFFORT_UNITS[known[name].unit], f"drives {name}") for name in driven
+        )
+        found.append(Listing("drive", "ND", "driving forces", quantities, ("D",)))
     if "power" in chosen:
         names = list(powers(_scheme(f, f.symbols("a")).edges())[0])
         quantities = tuple(Quantity(name, "W", f"power of {name}") for name in names)

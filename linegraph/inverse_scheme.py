@@ -314,6 +314,24 @@ class InverseScheme:
                 ends[element.name] = element.between or ends[str(element.joint)]
         return ends
 
+    def drives(self) -> dict[str, Scalar]:
+        """What prescribed joints take to move: the effort along each of their coordinates."""
+        found: dict[str, Scalar] = {}
+        for name, closure in self._tree.ends.items():
+            joint: Any = closure.component
+            if isinstance(joint, Constraint) or not any(x is not None for x in closure.drive):
+                continue
+            wrench = self.joints[name]
+            inward = transpose(self._chords.ends(name)[1].rotation)
+            force, torque = (times(inward, part) for part in wrench)
+            at, rates = (tuple(getattr(x, c) for x in closure.drive) for c in ("x", "dx"))
+            motion = joint.motion(self._algebra, at, rates)
+            for quantity, s, u in zip(
+                joint.velocities(), motion.angular, motion.linear, strict=True
+            ):
+                found[quantity.name] = dot(s, torque) + dot(u, force)
+        return found
+
     def edges(self) -> dict[str, Edge]:
         """All edges of the system graph, by name, in both subspaces at once."""
         found: dict[str, Edge] = {}

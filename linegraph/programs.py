@@ -341,6 +341,7 @@ PROGRAMS: dict[str, Maker] = {
     "reduction": closed_programs.reduction,
     "across": edge_programs.across,
     "reactions": edge_programs.reactions,
+    "drives": edge_programs.drives,
     "power": edge_programs.power,
     "outputs": edge_programs.outputs,
 }

@@ -37,7 +37,7 @@ def show(derivation: Derivation, heading: Callable[[str], str] = str) -> str:
         ("bodies", _bodies(derivation.model)),
         ("joints", _joints(derivation)),
         ("domains", _domains(derivation)),
-        ("graph: edges tail -> head, the same in translation and rotation", _graph(derivation)),
+        (f"graph: edges tail -> head, {_likeness(derivation)}", _graph(derivation)),
         ("tree: links from ground outward", _tree(tree)),
         ("coordinates", _coordinates(tree)),
         *((("constraints", _constraints(derivation)),) if tree.closed else ()),
@@ -46,10 +46,25 @@ def show(derivation: Derivation, heading: Callable[[str], str] = str) -> str:
             "circuit equations [B U] X = 0: B, chords x branches",
             _matrix(derivation.topology.circuit),
         ),
+        *_in_rotation(derivation),
     )
     return "\n".join(
         line for title, lines in sections for line in (heading(title), *_indented(lines), "")
     )
+
+
+def _likeness(derivation: Derivation) -> str:
+    same = "the same in translation and rotation"
+    return f"{same}, branches those of translation" if derivation.formulation.level else same
+
+
+def _in_rotation(derivation: Derivation) -> tuple[tuple[str, Lines], ...]:
+    """The cutset equations in rotation, where its tree is another."""
+    rotation = derivation.formulation.rotation
+    if not derivation.formulation.level:
+        return ()
+    title = "cutset equations in rotation, whose tree has inertia edges: A, branches x chords"
+    return ((title, _matrix(rotation.cutset)),)
 
 
 def assembled(derivation: Derivation, found: Assembly) -> str:

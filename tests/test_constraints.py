@@ -203,10 +203,66 @@ def test_hybrid_dynamics_returns_the_driving_torque() -> None:
     q, v, u = [0.3], [0.7], [1.1]
     a, reactions = driven.forward_dynamics(TIME, q, v, u), driven.reactions(TIME, q, v, u)
     drive = reactions[list(driven.REACTION_NAMES).index("j0_tz")]
+    assert driven.DRIVE_NAMES == ("j0",)
+    assert driven.drives(TIME, q, v, u) == pytest.approx([drive], abs=1e-13)
     state = ([0.5 * TIME**2, 0.3], [TIME, 0.7], [1.0, a[0]])
     tau = whole.inverse_dynamics(*state)
     assert drive == pytest.approx(tau[0], abs=1e-12)
     assert tau[1] == pytest.approx(u[0], abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("kind", "motion"), [("cylindrical", ["3.5*t", "sin(t)"]), ("helical", "9*t")]
+)
+@pytest.mark.parametrize("coordinates", ["joint", "absolute"])
+def test_driving_forces_do_the_power_that_is_missing(
+    kind: str, motion: Any, coordinates: str
+) -> None:
+    """Rate of energy = efforts times rates + driving forces times prescribed rates, branch or chord."""
+    model = pair(kind, motion=motion, **KINDS[kind])
+    model.formulation(coordinates=coordinates)
+    found = emitted(model, functions=("power",))
+    rng = np.random.default_rng(11)
+    base = lg.derive(model).numeric(t=TIME)
+    q, v = np.array(lg.derive(model).assembled.q), rng.normal(size=found.NV)
+    if getattr(found, "NC", 0):
+        q, v = found.project(TIME, q, v)
+    u = rng.normal(size=found.NU)
+    a = found.forward_dynamics(TIME, q, v, u)
+    a = a[0] if isinstance(a, tuple) else a
+    h = 1e-4
+
+    def at(s: float) -> float:
+        rates = np.array(base.coordinate_rates(q.tolist(), (v + s * a / 2).tolist()))
+        there = q + s * rates
+        return float(np.sum(found.energy(TIME + s, there, v + s * a)))
+
+    rate = (at(h) - at(-h)) / (2 * h)
+    powers, sums = found.power(TIME, q, v, u)
+    assert np.abs(sums).max() < 1e-11 * (1 + np.abs(powers).max())
+    prescribed = {"cylindrical": [3.5, math.cos(TIME)], "helical": [9.0]}[kind]
+    x = found.across(TIME, q, v)
+    spin = x[list(found.ACROSS_NAMES).index("base_wy")]
+    power = float(np.dot(found.drives(TIME, q, v, u), prescribed)) + u[0] * spin
+    assert rate == pytest.approx(power, rel=2e-6, abs=1e-6)
+
+
+def test_a_rod_of_variable_length_takes_it_from_inputs() -> None:
+    """Length, rate and acceleration are inputs; the assembly does not wait for them."""
+    model = lg.Model("winch", gravity=(0, 0, -9.81))
+    bob = model.body("bob", mass=2.0)
+    parts = (("prismatic", (1, 0, 0)), ("prismatic", (0, 0, 1)))
+    model.compound("at", between=("ground", bob), parts=parts, effort=False, start=(0, -1))
+    model.rod("rope", between=("ground", bob), length="input")
+    found = emitted(model)
+    assert found.U_NAMES == ("rope_length", "rope_length_rate", "rope_length_acceleration")
+    u = [1.5, 0.2, 0.3]
+    q, v = found.project([0.0, -1.2], [0.0, 0.0], u)
+    assert q == pytest.approx([0, -1.5], abs=1e-13)
+    assert v == pytest.approx([0, -0.2], abs=1e-13)
+    a, lam = found.forward_dynamics(q, v, u)
+    assert a == pytest.approx([0, -0.3], abs=1e-12)
+    assert lam[0] == pytest.approx(-2.0 * (9.81 - 0.3), abs=1e-11)
 
 
 def test_chaplygins_sleigh() -> None:
