@@ -31,7 +31,10 @@ def emitted(robot: Path, folder: Path, **environment: str) -> dict[str, str]:
     return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
 
 
-@pytest.mark.parametrize("robot", ["panda/panda.urdf", "anymal_c/anymal.urdf"])
+MODELS = ("panda/panda.urdf", "anymal_c/anymal.urdf", "bricard/bricard.toml", "bicycle/bicycle.toml")
+
+
+@pytest.mark.parametrize("robot", MODELS)
 def test_bytes_depend_on_the_input_alone(robot: str, tmp_path: Path) -> None:
     first = emitted(EXAMPLES / robot, tmp_path / "a", PYTHONHASHSEED="0")
     assert len(first) == 3
@@ -39,6 +42,7 @@ def test_bytes_depend_on_the_input_alone(robot: str, tmp_path: Path) -> None:
         {"PYTHONHASHSEED": "1", "LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8"},
         {"PYTHONHASHSEED": "12345", "LC_ALL": "C", "TZ": "Pacific/Auckland"},
         {"PYTHONHASHSEED": "7", "SOURCE_DATE_EPOCH": "0", "HOME": str(tmp_path)},
+        {"PYTHONHASHSEED": "8", "OPENBLAS_NUM_THREADS": "1"},
     ]
     for i, setting in enumerate(settings):
         folder = tmp_path / "deeply" / f"nested {i}" / "ordner"
