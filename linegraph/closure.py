@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from linegraph.constraints.base import Constraint, Pose, Prescribed, Row
+from linegraph.constraints.base import Constraint, Instant, Pose, Prescribed, Row
 from linegraph.frames import Frame, Pair, along_velocities, frames, relative_motion, seated, seen
 from linegraph.jets import Jet, Jets, lifted
 from linegraph.joints.base import (
@@ -131,9 +131,8 @@ class Chords:
             tail, head = (Pose(f.rotation, f.origin) for f in self.ends(closure.component.name))
             drive = [None if x is None else Prescribed(x.x, x.dx) for x in closure.drive]
             resolve = resolver(self._algebra, self._parameters)
-            found[closure.component.name] = rows_of(
-                closure, self._algebra, resolve, tail, head, drive
-            )
+            at = Instant(self._algebra, resolve, tail, head, drive)
+            found[closure.component.name] = rows_of(closure, at)
         return found
 
     def position(self) -> list[Scalar]:
@@ -218,9 +217,8 @@ class Chords:
         jets = Jets(self._algebra)
         base = resolver(self._algebra, self._parameters)
         drive = [None if x is None else Prescribed(x, Jet(x.dx, x.ddx, 0)) for x in closure.drive]
-        moving = rows_of(
-            closure, jets, lambda x: lifted(base(x)), _in_motion(tail), _in_motion(head), drive
-        )
+        at = Instant(jets, lambda x: lifted(base(x)), _in_motion(tail), _in_motion(head), drive)
+        moving = rows_of(closure, at)
         u, w = relative_motion(tail, head)
         line, velocity = subtract(head.origin, tail.origin), subtract(head.linear, tail.linear)
         bent = add(cross(tail.spin, line), cross(tail.angular, velocity))

@@ -7,10 +7,9 @@ star with its centre in 0:
     branches   2k-1: 0 -> B_k    2k: 0 -> C_k
     chords     C_1 -> B_1, and for every other body j the pair C_p -> B_j (inner), C_j -> B_j (outer)
 
-The through variable of branch 1 is the reaction of the basement; without that branch 2n-1 branches face 2n-1
-chords. Three places of the print are corrected here: P*, which it does not define, Z_1, and the terms of
-translational joints in B, which it does not give. For reading and for proof; `paper` has the joint form and
-`orthogonality` is what gets emitted. Vectors are resolved in ground axes.
+Without branch 1, whose through variable is the basement's reaction, 2n-1 branches face 2n-1 chords. Corrected
+here are P*, which the print does not define, Z_1, and the terms of translational joints in B, which it does
+not give. For reading and for proof; `paper` has the joint form. Vectors are resolved in ground axes.
 """
 
 from __future__ import annotations
@@ -153,28 +152,28 @@ def equations(star: StarTree) -> PrintedMatrices:
     where w = (H P*)^T (X_c^r - 1 X_1^r) is the angular velocity of each chord's tail. The last two terms of
     B_3 and the line of K are missing in print; W^t is `W_slide`.
     """
-    h = _Operators(star)
-    rest = _zeros(len(star.chords) - 1)
+    h = Operators(star)
+    rest = zeros(len(star.chords) - 1)
     given, start = [star.X_1_r_dot, *rest], [star.X_1_ddot, *rest]
-    spin = _sum(star.X_r, [negate(star.X_1_r), *rest])
+    spin = summed(star.X_r, [negate(star.X_1_r), *rest])
     w = h.tail(spin)
-    v = _each(cross, w, star.X_r)
-    z_1, z_2 = _negated(h.inertia(v)), _negated(h.mass(h.swept(v)))
-    whirl = _each(cross, w, _each(cross, w, star.X))
-    coriolis = [scale(2, x) for x in _each(cross, w, star.X_slide)]
-    known = (_negated(x) for x in (whirl, coriolis, star.W_slide))
+    v = each(cross, w, star.X_r)
+    z_1, z_2 = negated(h.inertia(v)), negated(h.mass(h.swept(v)))
+    whirl = each(cross, w, each(cross, w, star.X))
+    coriolis = [scale(2, x) for x in each(cross, w, star.X_slide)]
+    known = (negated(x) for x in (whirl, coriolis, star.W_slide))
     # - diag X x (H P*)^T is the transpose of H P* x diag X
-    b_3 = h.mass(_sum(start, h.swept(given), *known))
+    b_3 = h.mass(summed(start, h.swept(given), *known))
     pull = h.gathered(star.Y_t)
     omega = h.spread(spin)
-    gyroscopic = _each(cross, omega, _each(vector.times, star.I, omega))
-    b_2 = _sum(h.gathered(star.Y_r), _negated(h.gathered(gyroscopic)))
-    b_1 = _sum(h.moment(_sum(b_3, pull)), h.inertia(given), b_2)
-    bent = _negated(h.mass(h.swept(star.W)))
-    turning = _sum(b_1, z_1, h.moment(z_2), _negated(h.inertia(star.W)), h.moment(bent))
-    sliding = _sum(b_3, pull, z_2, bent)
+    gyroscopic = each(cross, omega, each(vector.times, star.I, omega))
+    b_2 = summed(h.gathered(star.Y_r), negated(h.gathered(gyroscopic)))
+    b_1 = summed(h.moment(summed(b_3, pull)), h.inertia(given), b_2)
+    bent = negated(h.mass(h.swept(star.W)))
+    turning = summed(b_1, z_1, h.moment(z_2), negated(h.inertia(star.W)), h.moment(bent))
+    sliding = summed(b_3, pull, z_2, bent)
     b = [
-        _projected(s, turning) + _projected(k, sliding) + effort
+        projected(s, turning) + projected(k, sliding) + effort
         for s, k, effort in zip(star.S, star.K, star.Y_c, strict=True)
     ]
     own = {field.name: getattr(star, field.name) for field in fields(StarTree)}
@@ -183,31 +182,32 @@ def equations(star: StarTree) -> PrintedMatrices:
     )
 
 
-def _square_form(star: StarTree, h: _Operators) -> list[list[Scalar]]:
+def _square_form(star: StarTree, h: Operators) -> list[list[Scalar]]:
     """A of (13) and (15)."""
     turned_by = [h.spread(row) for row in star.S]
-    moved_by = [_sum(h.swept(s), k) for s, k in zip(star.S, star.K, strict=True)]
-    turning = [_each(vector.times, star.I, row) for row in turned_by]
+    moved_by = [summed(h.swept(s), k) for s, k in zip(star.S, star.K, strict=True)]
+    turning = [each(vector.times, star.I, row) for row in turned_by]
     moving = [h.mass(row) for row in moved_by]
     n = range(len(star.S))
     return [
-        [_projected(turned_by[i], turning[j]) + _projected(moved_by[i], moving[j]) for j in n]
+        [projected(turned_by[i], turning[j]) + projected(moved_by[i], moving[j]) for j in n]
         for i in n
     ]
 
 
-class _Operators:
+class Operators:
     """The products of matrices that (13)-(15) are written with, applied to columns of vectors."""
 
     def __init__(self, star: StarTree) -> None:
+        """Prepare H^T and H P*."""
         self._star = star
-        self._back = _transposed(star.H)
-        columns = _transposed(star.P_star)
+        self._back = transposed(star.H)
+        columns = transposed(star.P_star)
         self._tails = [
             [sum(x * y for x, y in zip(row, column, strict=True)) for column in columns]
             for row in star.H
         ]
-        self._tails_back = _transposed(self._tails)
+        self._tails_back = transposed(self._tails)
 
     def gathered(self, x: Column) -> Column:
         """``H x``: from branches to chords."""
@@ -219,11 +219,11 @@ class _Operators:
 
     def mass(self, x: Column) -> Column:
         """``H m H^T x``."""
-        return self.gathered(_each(scale, self._star.m, self.spread(x)))
+        return self.gathered(each(scale, self._star.m, self.spread(x)))
 
     def inertia(self, x: Column) -> Column:
         """``H I H^T x``."""
-        return self.gathered(_each(vector.times, self._star.I, self.spread(x)))
+        return self.gathered(each(vector.times, self._star.I, self.spread(x)))
 
     def tail(self, x: Column) -> Column:
         """``(H P*)^T x``: what the tail of each chord has of a quantity of rotation."""
@@ -231,11 +231,11 @@ class _Operators:
 
     def moment(self, x: Column) -> Column:
         """``H P* x diag X x``: torques of forces at the heads of the arms, summed towards the root."""
-        return _product(self._tails, _each(cross, self._star.X, x))
+        return _product(self._tails, each(cross, self._star.X, x))
 
     def swept(self, x: Column) -> Column:
         """``(H P* x diag X)^T x``: how arms move that turn with their tails."""
-        return _each(cross, self.tail(x), self._star.X)
+        return each(cross, self.tail(x), self._star.X)
 
 
 def _star_tree(tree: KinematicTree, crossed: list[Arm], applied: Applied | None) -> StarTree:
@@ -248,8 +248,8 @@ def _star_tree(tree: KinematicTree, crossed: list[Arm], applied: Applied | None)
         ends += [f"B_{j}", f"C_{j}"]
         chords += [f"C_{parent + 1} -> B_{j}", f"C_{j} -> B_{j}"]
     p, h = _topology(parents)
-    x, x_r, w = (_zeros(len(chords)) for _ in range(3))
-    x_slide, w_slide, y_t, y_r = (_zeros(len(chords)) for _ in range(4))
+    x, x_r, w = (zeros(len(chords)) for _ in range(3))
+    x_slide, w_slide, y_t, y_r = (zeros(len(chords)) for _ in range(4))
     masses: list[Scalar] = [0] * len(chords)
     inertias = [NO_TENSOR] * len(chords)
     for j, i in enumerate(links):
@@ -330,7 +330,7 @@ def _topology(parents: list[int]) -> tuple[Integers, Integers]:
             columns[inner][inner] = 1
             columns[outer] = list(columns[inner])
         columns[outer][outer] = -1
-    return p, _transposed(columns)
+    return p, transposed(columns)
 
 
 def _axes(
@@ -338,8 +338,8 @@ def _axes(
 ) -> tuple[Rows, Rows]:
     """S and K."""
     chords = 2 * len(links) - 1
-    s: Rows = [_zeros(chords) for _ in tree.velocities]
-    k: Rows = [_zeros(chords) for _ in tree.velocities]
+    s: Rows = [zeros(chords) for _ in tree.velocities]
+    k: Rows = [zeros(chords) for _ in tree.velocities]
     for j, i in enumerate(links):
         motion, out = crossed[i].motion, Full(bodies[i].rotation).out
         for a, freedom in enumerate(tree.links[i].velocities):
@@ -365,11 +365,13 @@ def _basement_motion(
     return bodies[base].angular, bodies[base].remainder, pull
 
 
-def _zeros(count: int) -> Column:
+def zeros(count: int) -> Column:
+    """Nothing on every edge."""
     return [ZERO] * count
 
 
-def _transposed(matrix: Integers) -> Integers:
+def transposed(matrix: Integers) -> Integers:
+    """Rows and columns exchanged."""
     return [list(column) for column in zip(*matrix, strict=True)]
 
 
@@ -381,18 +383,21 @@ def _product(matrix: Integers, x: Column) -> Column:
     ]
 
 
-def _each(product: Callable[[Any, Vector], Vector], a: Iterable[Any], b: Column) -> Column:
+def each(product: Callable[[Any, Vector], Vector], a: Iterable[Any], b: Column) -> Column:
     """A product chord by chord."""
     return [product(x, y) for x, y in zip(a, b, strict=True)]
 
 
-def _sum(*columns: Column) -> Column:
+def summed(*columns: Column) -> Column:
+    """Columns added, edge by edge."""
     return [reduce(add, entries) for entries in zip(*columns, strict=True)]
 
 
-def _negated(column: Column) -> Column:
+def negated(column: Column) -> Column:
+    """Signs turned."""
     return [negate(x) for x in column]
 
 
-def _projected(axes: Column, column: Column) -> Scalar:
+def projected(axes: Column, column: Column) -> Scalar:
+    """The products with a row of S or K, summed up."""
     return sum(dot(a, x) for a, x in zip(axes, column, strict=True))

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from linegraph.constraints.base import Constraint, Pose, Prescribed, Row
+from linegraph.constraints.base import Constraint, Instant, Pose, Row
 from linegraph.frames import seen
 from linegraph.joints.base import Along, Restriction, Square, Thread, Unturned, Upright
 from linegraph.rotation import IDENTITY_MATRIX, product
@@ -21,8 +21,6 @@ from linegraph.vector import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from linegraph.algebra import Algebra
     from linegraph.joints import Joint
     from linegraph.kinematics import Closure
@@ -44,21 +42,16 @@ def where(restriction: Restriction, joint: Joint) -> str:
     return f" along ({', '.join(f'{float(x):.4g}' for x in direction)}) of its tail frame"
 
 
-def rows_of(
-    closure: Closure,
-    algebra: Algebra,
-    resolve: Any,
-    tail: Pose,
-    head: Pose,
-    drive: Sequence[Prescribed | None],
-) -> tuple[Row, ...]:
-    """All rows of a chord over an algebra."""
+def rows_of(closure: Closure, at: Instant) -> tuple[Row, ...]:
+    """All rows of a chord at an instant, over any algebra."""
     component = closure.component
     if isinstance(component, Constraint):
-        return component.rows(algebra, resolve, tail, head, drive)
-    found = [_row(restriction, algebra, tail, head) for restriction in closure.restrictions]
-    if any(x is not None for x in drive):
-        found += _driven(component, algebra, tail, head, drive)
+        return component.rows(at)
+    found = [
+        _row(restriction, at.algebra, at.tail, at.head) for restriction in closure.restrictions
+    ]
+    if any(x is not None for x in at.drive):
+        found += _driven(component, at)
     return tuple(found)
 
 
@@ -111,22 +104,18 @@ def _wrapped(algebra: Algebra, angle: Scalar) -> Scalar:
     return algebra.function("atan2", algebra.sin(angle), algebra.cos(angle))
 
 
-def _driven(
-    joint: Joint,
-    algebra: Algebra,
-    tail: Pose,
-    head: Pose,
-    drive: Sequence[Prescribed | None],
-) -> list[Row]:
+def _driven(joint: Joint, at: Instant) -> list[Row]:
     """Rows that prescribe a chord's own coordinates; of angles, full turns do not count."""
-    rotation, displacement = seen(tail, head)
-    measured = joint.measured(algebra, rotation, displacement)
-    duals = joint.duals(algebra, rotation, displacement)
+    rotation, displacement = seen(at.tail, at.head)
+    measured = joint.measured(at.algebra, rotation, displacement)
+    duals = joint.duals(at.algebra, rotation, displacement)
     found = []
-    for x, (m, f), given, quantity in zip(measured, duals, drive, joint.positions(), strict=True):
+    for x, (m, f), given, quantity in zip(
+        measured, duals, at.drive, joint.positions(), strict=True
+    ):
         if given is not None:
             behind = x - given.x
-            position = _wrapped(algebra, behind) if quantity.unit == "rad" else behind
-            force, torque = times(head.rotation, f), times(head.rotation, m)
+            position = _wrapped(at.algebra, behind) if quantity.unit == "rad" else behind
+            force, torque = times(at.head.rotation, f), times(at.head.rotation, m)
             found.append(Row(position, force, torque, given.dx))
     return found

@@ -249,3 +249,71 @@ def robot(name: str, base: str) -> System:
     """An example that is a URDF file."""
     (path,) = (EXAMPLES / name).glob("*.urdf")
     return System(urdf.read(path, base=base), folder_for(name), "-O0")
+
+
+# ---- the same mechanisms in other coordinates
+
+PLAIN = {
+    "rolling_disc": """
+[free.motion]
+between = ["ground", "disc"]
+start = [0, 0, 0.2, 0, 0, 0, 1]
+""",
+    "bicycle": """
+[free.frame]
+between = ["ground", "rear"]
+""",
+    "car_axis": """
+[body.slide]
+
+[prismatic.place_x]
+between = ["ground", "slide"]
+axis = [1, 0, 0]
+effort = false
+start = 1
+
+[prismatic.place_y]
+between = ["slide", "right"]
+axis = [0, 1, 0]
+effort = false
+start = 0.5
+""",
+}
+"""What stands for a compound joint, which cannot close a loop and so has to be a branch of every tree."""
+
+TREES: dict[str, tuple[str, ...]] = {
+    "four_bar": ("motor", "elbow", "knee"),
+    "slider_crank": ("shaft", "bore", "small_end"),
+    "andrews_squeezer": ("beta", "Theta", "E3", "E4", "Phi", "E6", "Omega"),
+    "bricard": ("hinge1", "hinge2", "hinge3", "hinge4", "hinge5"),
+    "stewart_platform": (
+        "platform/inertia",
+        *(f"{joint}{k}" for joint in ("ball", "leg") for k in range(1, 7)),
+    ),
+    "rolling_disc": (),
+    "bicycle": ("front/inertia", "steer", "rear_spin", "front_spin"),
+    "car_axis": ("right/inertia",),
+    "crane_hoist": ("rail", "load/inertia"),
+    "parallelograms": ("A0", "B0", "C1", "B1", "C2"),
+}
+"""Another tree than the automatic one; `rolling_disc` has one joint alone."""
+
+KINDS = ("absolute", "absolute-angle", "tree")
+
+
+def reformulated(name: str, kind: str) -> lg.Model:
+    """An example with other coordinates, or with the tree of `TREES`; automatic independent ones."""
+    text = (EXAMPLES / name / f"{name}.toml").read_text(encoding="utf-8")
+    blocks = text.split("\n\n")
+    if name in PLAIN:
+        blocks = [PLAIN[name] if b.startswith("[compound.") else b for b in blocks]
+    model = modelfile.parse("\n\n".join(blocks).encode(), f"{name}.toml")
+    chosen: dict[str, Any] = {"tree": TREES[name]} if kind == "tree" else {"coordinates": kind}
+    model.formulation(independent=None, **chosen)
+    return model
+
+
+@functools.cache
+def twin(name: str, kind: str) -> System:
+    """A closed example in other coordinates, emitted and compiled once."""
+    return System(accelerating(reformulated(name, kind)), folder_for(name), "-O0")

@@ -135,9 +135,23 @@ def test_the_numbers_are_those_of_a_four_bar(printed: str) -> None:
 # ---- the tables
 
 
+FAN = """
+[body.fan]
+mass = 0.1
+inertia = [1e-4, 1e-4, 1e-4]
+[revolute.fan]
+between = ["rocker", "fan"]
+axis = [0, 0, 1]
+motion = "0.3"
+"""
+
+
 @pytest.fixture(scope="module")
 def module(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    files = render(modelfile.read(EXAMPLE), languages=["python"], functions=["power"])
+    """The example with a fan that a motor turns, so that every function is there."""
+    text = EXAMPLE.read_text("utf-8") + FAN
+    model = modelfile.parse(text.encode(), EXAMPLE.name)
+    files = render(model, languages=["python"], functions=["power"])
     return load(files, "four_bar", tmp_path_factory.mktemp("python"))
 
 

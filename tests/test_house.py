@@ -55,7 +55,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("loads",),
     ("edges", "paper", "regularity"),
     ("inverse_scheme", "paper_print", "assembly"),
-    ("observation", "symbols"),
+    ("observation", "paper_inverse", "symbols"),
     ("derive",),
     ("closed_programs", "edge_programs", "interpretation", "modelfile", "urdf"),
     ("programs",),

@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from modelfile_text import SMALL, ZOO
+from modelfile_text import LOOP, SMALL, ZOO
 
 import linegraph as lg
+from linegraph.constraints import CONSTRAINTS
 from linegraph.derive import derive
 from linegraph.elements import ELEMENTS
 from linegraph.emission import render
@@ -25,6 +26,7 @@ from linegraph.modelfile.starter import write
 from linegraph.modelfile.tables import TYPES, joint_table
 
 DOCUMENTATION = Path(__file__).parent.parent / "docs" / "model_file.md"
+EXAMPLES = re.findall(r"^```toml\n(.*?)^```", DOCUMENTATION.read_text("utf-8"), re.M | re.S)
 
 
 def zoo() -> lg.Model:
@@ -204,7 +206,7 @@ def test_unused_keys_of_joints_are_refused_by_type() -> None:
 
 
 def test_every_component_is_in_the_language() -> None:
-    assert TYPES.keys() > {*JOINTS, *ELEMENTS}
+    assert TYPES.keys() > {*JOINTS, *ELEMENTS, *CONSTRAINTS, "relation"}
     assert set(TYPES) <= set(schema()["properties"])
 
 
@@ -342,7 +344,7 @@ def _valid(value: Any, wanted: dict[str, Any]) -> bool:
         case "array":
             return (
                 isinstance(value, list)
-                and wanted["minItems"] <= len(value) <= wanted["maxItems"]
+                and wanted.get("minItems", 0) <= len(value) <= wanted.get("maxItems", len(value))
                 and all(_valid(item, wanted["items"]) for item in value)
             )
         case "string":
@@ -355,7 +357,7 @@ def _valid(value: Any, wanted: dict[str, Any]) -> bool:
     return True
 
 
-@pytest.mark.parametrize("toml", [ZOO, SMALL, starter("cart")], ids=["zoo", "small", "starter"])
+@pytest.mark.parametrize("toml", [ZOO, SMALL, LOOP, starter("cart"), *EXAMPLES])
 def test_the_schema_accepts_what_the_reader_accepts(toml: str) -> None:
     assert _valid(tomllib.loads(toml), schema())
 
@@ -369,6 +371,14 @@ def test_the_schema_accepts_what_the_reader_accepts(toml: str) -> None:
         ("axis = [0, 1, 0]", ""),
         ("[revolute.hinge]", "[revolut.hinge]"),
         ('unit = "N"', "unit = 1"),
+        ("[revolute.hinge]", "[rod.r]\nlength = 1\n[revolute.hinge]"),
+        ("[revolute.hinge]", '[driver.d]\nbetween = ["ground", "arm"]\n[revolute.hinge]'),
+        ("[revolute.hinge]", "[relation.r]\n[revolute.hinge]"),
+        ("[revolute.hinge]", "[formulation]\nbaumgarte = [1]\n[revolute.hinge]"),
+        ("[revolute.hinge]", '[formulation]\ncoordinates = "cartesian"\n[revolute.hinge]'),
+        ("[revolute.hinge]", "[formulation]\ntree = [1]\n[revolute.hinge]"),
+        ("[revolute.hinge]", "[outputs]\ny = {}\n[revolute.hinge]"),
+        ("[revolute.hinge]", "[outputs]\ny = true\n[revolute.hinge]"),
     ],
 )
 def test_the_schema_refuses_what_the_reader_refuses(old: str, new: str) -> None:
@@ -405,9 +415,6 @@ def test_the_starter_writes_over_nothing(tmp_path: Path, monkeypatch: pytest.Mon
         with pytest.raises(LinegraphError, match="name"):
             write(bad)
     assert [path.name for path in tmp_path.iterdir()] == ["crane.toml"]
-
-
-EXAMPLES = re.findall(r"^```toml\n(.*?)^```", DOCUMENTATION.read_text("utf-8"), re.M | re.S)
 
 
 @pytest.mark.parametrize("number", range(len(EXAMPLES)))

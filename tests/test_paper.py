@@ -17,8 +17,11 @@ import linegraph as lg
 from linegraph import orthogonality
 from linegraph.algebra import Floats
 from linegraph.errors import ModelError
+from linegraph.inverse_scheme import InverseScheme
 from linegraph.loads import applied
+from linegraph.orthogonality import arms
 from linegraph.paper import paper_matrices
+from linegraph.paper_inverse import star_variables
 from linegraph.paper_print import PrintedMatrices, equations, printed_matrices
 
 if TYPE_CHECKING:
@@ -391,3 +394,38 @@ def test_a_double_pendulum_over_sympy() -> None:
         assert (sympy.Matrix(matrices.A) - inertia).applyfunc(sympy.simplify).is_zero_matrix
         rest = (sympy.Matrix(matrices.B) - right).applyfunc(sympy.expand_trig)
         assert rest.applyfunc(sympy.simplify).is_zero_matrix
+
+
+# ---- the inverse scheme
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_the_papers_inverse_scheme_is_the_recursive_one(seed: int) -> None:
+    """Joint forces projected on the joints' axes are inverse dynamics; edge by edge they are `reactions`."""
+    numeric, q, v, paper = printed(seed, PRINTED, basement=BASEMENTS[seed % 3], count=1 + seed % 6)
+    a = np.random.default_rng([seed, 5]).normal(size=len(v)).tolist()
+    found = star_variables(paper, a)
+    projected = [
+        sum(np.dot(s, y) for s, y in zip(row, found.Y_c_r, strict=True))
+        + sum(np.dot(k, y) for k, y in zip(slide, found.Y_c_t, strict=True))
+        for row, slide in zip(paper.S, paper.K, strict=True)
+    ]
+    assert error(projected, numeric.inverse_dynamics(q, v, a)) < TOLERANCE
+    scheme = InverseScheme(
+        numeric.derivation,
+        numeric.tree,
+        numeric.algebra,
+        numeric.parameters,
+        arms(numeric.tree, numeric.algebra, q, v),
+        numeric.chords(q, v),
+        (tuple(q), tuple(v)),
+        a,
+    )
+    moving = [link for link in numeric.tree.links if not link.place.drive]
+    forces = {link.name: scheme.joints[link.joint.name].force for link in moving}
+    for k, body in enumerate(paper.bodies):
+        # the outer chord runs from the mass centre to the joint: it pushes the body back
+        force = -np.array(found.Y_c_t[2 * k], dtype=float)
+        link = next(link for link in moving if link.name == body)
+        expected = np.array(forces[body], dtype=float) * (1 if link.forward else -1)
+        assert error(force, expected) < TOLERANCE

@@ -38,6 +38,23 @@ class Prescribed(NamedTuple):
     dx: Scalar
 
 
+class Instant(NamedTuple):
+    """Where and when rows are asked for.
+
+    Attributes:
+        algebra: where to calculate.
+        resolve: from model values to scalars.
+        tail, head: the ends.
+        drive: what is prescribed; None where nothing is.
+    """
+
+    algebra: Algebra
+    resolve: Resolve
+    tail: Pose
+    head: Pose
+    drive: Sequence[Prescribed | None]
+
+
 class Row(NamedTuple):
     """One reaction direction between tail and head, in ground axes.
 
@@ -94,14 +111,7 @@ class Constraint:
         """For each row its multiplier and whether it has an equation of position."""
         raise NotImplementedError
 
-    def rows(
-        self,
-        algebra: Algebra,
-        resolve: Resolve,
-        tail: Pose,
-        head: Pose,
-        drive: Sequence[Prescribed | None],
-    ) -> tuple[Row, ...]:
+    def rows(self, at: Instant) -> tuple[Row, ...]:
         """The rows at a state, in the order of `equations`."""
         raise NotImplementedError
 

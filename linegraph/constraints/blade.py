@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linegraph.constraints.base import Constraint, Pose, Prescribed, Row
+from linegraph.constraints.base import Constraint, Row
 from linegraph.program import Quantity
 from linegraph.vector import ZERO, Vector, times
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from linegraph.algebra import Algebra
-    from linegraph.constraints.base import Resolve
+    from linegraph.constraints.base import Instant
 
 
 @dataclass(frozen=True)
@@ -35,15 +32,8 @@ class Blade(Constraint):
         """The force across it."""
         return ((Quantity(f"{self.name}_across", "N", f"force across blade {self.name}"), False),)
 
-    def rows(
-        self,
-        algebra: Algebra,
-        resolve: Resolve,
-        tail: Pose,
-        head: Pose,
-        drive: Sequence[Prescribed | None],
-    ) -> tuple[Row, ...]:
+    def rows(self, at: Instant) -> tuple[Row, ...]:
         """A force along the direction."""
         x, y, z = self.axis
-        across = times(head.rotation, (resolve(x), resolve(y), resolve(z)))
+        across = times(at.head.rotation, (at.resolve(x), at.resolve(y), at.resolve(z)))
         return (Row(None, across, ZERO),)

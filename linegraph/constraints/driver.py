@@ -5,16 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from linegraph.constraints.base import Constraint, Pose, Prescribed, Row
+from linegraph.constraints.base import Constraint, Row
 from linegraph.program import Quantity
 from linegraph.rotation import IDENTITY_MATRIX
 from linegraph.vector import ZERO, dot, subtract, times
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from linegraph.algebra import Algebra
-    from linegraph.constraints.base import Resolve
+    from linegraph.constraints.base import Instant
 
 
 @dataclass(frozen=True)
@@ -60,19 +57,12 @@ class Driver(Constraint):
             if value is not None
         )
 
-    def rows(
-        self,
-        algebra: Algebra,
-        resolve: Resolve,
-        tail: Pose,
-        head: Pose,
-        drive: Sequence[Prescribed | None],
-    ) -> tuple[Row, ...]:
+    def rows(self, at: Instant) -> tuple[Row, ...]:
         """Along the tail's axes."""
-        line = subtract(head.origin, tail.origin)
+        line = subtract(at.head.origin, at.tail.origin)
         found = []
-        for axis, given in zip(IDENTITY_MATRIX, drive, strict=True):
+        for axis, given in zip(IDENTITY_MATRIX, at.drive, strict=True):
             if given is not None:
-                direction = times(tail.rotation, axis)
+                direction = times(at.tail.rotation, axis)
                 found.append(Row(dot(direction, line) - given.x, direction, ZERO, given.dx))
         return tuple(found)

@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from linegraph.constraints.base import Constraint, Pose, Prescribed, Row
+from linegraph.constraints.base import Constraint, Row
 from linegraph.program import Quantity
 from linegraph.vector import ZERO, dot, scale, subtract
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from linegraph.algebra import Algebra
-    from linegraph.constraints.base import Resolve
+    from linegraph.constraints.base import Instant
 
 
 @dataclass(frozen=True)
@@ -45,17 +42,10 @@ class Rod(Constraint):
         about = f"force of rod {self.name} on its head, along the line from tail to head"
         return ((Quantity(f"{self.name}_force", "N", about), True),)
 
-    def rows(
-        self,
-        algebra: Algebra,
-        resolve: Resolve,
-        tail: Pose,
-        head: Pose,
-        drive: Sequence[Prescribed | None],
-    ) -> tuple[Row, ...]:
+    def rows(self, at: Instant) -> tuple[Row, ...]:
         """Along the line that joins the points."""
-        line = subtract(head.origin, tail.origin)
-        distance = algebra.sqrt(dot(line, line))
-        (length,) = drive
+        line = subtract(at.head.origin, at.tail.origin)
+        distance = at.algebra.sqrt(dot(line, line))
+        (length,) = at.drive
         x, dx = length or (0, 0)
         return (Row(distance - x, scale(1 / distance, line), ZERO, dx),)

@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from linegraph.constraints.base import Constraint, Pose, Prescribed, Row
+from linegraph.constraints.base import Constraint, Pose, Row
 from linegraph.program import Quantity
 from linegraph.vector import Scalar, Vector, add, cross, dot, negate, scale, subtract, times
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from linegraph.algebra import Algebra
-    from linegraph.constraints.base import Resolve
+    from linegraph.constraints.base import Instant
 
 
 @dataclass(frozen=True)
@@ -61,26 +58,19 @@ class Rolling(Constraint):
             )
         )
 
-    def rows(
-        self,
-        algebra: Algebra,
-        resolve: Resolve,
-        tail: Pose,
-        head: Pose,
-        drive: Sequence[Prescribed | None],
-    ) -> tuple[Row, ...]:
+    def rows(self, at: Instant) -> tuple[Row, ...]:
         """Forces at the point of contact."""
-        normal, along, across = _columns(tail)
-        radius, crown = resolve(self.radius), resolve(self.crown)
-        line = subtract(head.origin, tail.origin)
+        normal, along, across = _columns(at.tail)
+        radius, crown = at.resolve(self.radius), at.resolve(self.crown)
+        line = subtract(at.head.origin, at.tail.origin)
         if self.axis is None:
             contact = scale(-radius, normal)
             height: Scalar = radius
         else:
             x, y, z = self.axis
-            axis = times(head.rotation, (resolve(x), resolve(y), resolve(z)))
+            axis = times(at.head.rotation, (at.resolve(x), at.resolve(y), at.resolve(z)))
             tilt = dot(normal, axis)
-            level = algebra.sqrt(1 - tilt * tilt)
+            level = at.algebra.sqrt(1 - tilt * tilt)
             upward = scale(1 / level, subtract(normal, scale(tilt, axis)))
             contact = negate(add(scale(radius, upward), scale(crown, normal)))
             height = radius * level + crown
