@@ -7,29 +7,21 @@ independent: no special position decides.
 
 from __future__ import annotations
 
-import random
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from linegraph.closure import equations
 from linegraph.errors import ModelError
 from linegraph.joints import Joint
-from linegraph.joints.base import BY_INPUT
-from linegraph.layout import coordinates
+from linegraph.search import Search, quoted
 
 if TYPE_CHECKING:
+    import random
     from collections.abc import Mapping, Sequence
 
-    from linegraph.closure import Chords, Equation
     from linegraph.derive import Derivation, Numeric
-    from linegraph.kinematics import Closure, KinematicTree
 
     Array = Any
 
-TRIES = 60
-STEPS = 60
-CLOSED = 1e-11
-LARGEST_STEP = 0.6
 DEPENDENT = 1e-8
 """A singular value of the scaled Jacobian below this fraction of the largest is zero."""
 
@@ -74,8 +66,8 @@ def assemble(
     Raises:
         ModelError: there is none, or what is prescribed contradicts itself; names the edges.
     """
-    search = _Search(derivation, dict(hold or {}), seed)
-    return search.judged(search.position(start))
+    search = Search(derivation, dict(hold or {}), seed)
+    return _Judgement(search).of(search.position(start))
 
 
 def consistent(
@@ -88,7 +80,7 @@ def consistent(
         numeric: it at the time and for the inputs and parameters wanted.
         draw: where randomness comes from.
     """
-    search = _Search(derivation, {}, draw.randrange(2**31), numeric)
+    search = Search(derivation, {}, draw.randrange(2**31), numeric)
     start = derivation.assembled.q
     near = list(start)
     search.close(near)
@@ -119,73 +111,24 @@ def saddle(
     return found[:n].tolist(), found[n:].tolist()
 
 
-class _Search:
-    """One search, over floats."""
+class _Judgement:
+    """What the constraints are worth, over floats."""
 
-    def __init__(
-        self,
-        derivation: Derivation,
-        hold: dict[str, float],
-        seed: int,
-        numeric: Numeric | None = None,
-    ) -> None:
-        import numpy
+    def __init__(self, search: Search) -> None:
+        self.search = search
+        self.np = search.np
+        self.numeric = search.numeric
+        self.tree = search.tree
+        self.equations = search.equations
+        self.derivation = search.derivation
 
-        self.np = numpy
-        self.derivation = derivation
-        self.draw = random.Random(seed)
-        self.numeric: Numeric = numeric or derivation.numeric()
-        self.tree: KinematicTree = self.numeric.tree
-        self.equations = equations(self.tree)
-        names = [quantity.name for quantity in self.tree.positions]
-        for name in hold:
-            if name not in names:
-                known = ", ".join(names[:8])
-                raise ModelError(f'coordinate "{name}"', f"is none of this tree; known: {known}")
-        self.held = {names.index(name): float(value) for name, value in hold.items()}
-        held = [e for e in self.equations if e.holonomic]
-        # what an input prescribes is wherever that input says: any position will do
-        self.sought = [k for k, e in enumerate(held) if not self._by_input(e)]
-
-    def _by_input(self, equation: Equation) -> bool:
-        """Whether a constraint prescribes a motion that comes from inputs."""
-        closure = self.tree.ends[equation.component]
-        component = closure.component
-        if isinstance(component, Joint):
-            q = component.positions()
-            drive = component.drive
-            given = list(drive) if isinstance(drive, (tuple, list)) else [drive] * len(q)
-        else:
-            given = [x for x, _ in component.prescribed() if x is not None]
-        place = equation.place - len(closure.restrictions)
-        return 0 <= place < len(given) and given[place] == BY_INPUT
-
-    def position(self, given: Sequence[float] | None) -> list[float]:
-        """The first place found."""
-        start = self._start() if given is None else list(given)
-        best: tuple[float, list[float]] | None = None
-        for attempt in range(TRIES):
-            spread = 0.0 if attempt == 0 else 0.1 * attempt
-            q = [x + self.draw.uniform(-spread, spread) for x in start]
-            for k, value in self.held.items():
-                q[k] = value
-            try:
-                gap = self.close(q)
-                if gap < CLOSED and not self._flipped(q):
-                    return q
-            except (ArithmeticError, ValueError, ModelError):
-                continue  # two ends of a rod coincide, or the like: begin elsewhere
-            if best is None or gap < best[0]:
-                best = (gap, q)
-        raise self._refusal(best[1] if best else None)
-
-    def judged(self, q: list[float]) -> Assembly:
+    def of(self, q: list[float]) -> Assembly:
         """The position with what the constraints are worth around it."""
         np = self.np
-        places = [q, *(x for _ in range(2) if (x := self.beside(q)) is not None)]
-        best = max(self._rank(place) for place in places)
-        at = next(place for place in places if self._rank(place) == best)
-        J = self._jacobian(at)
+        places = [q, *(x for _ in range(2) if (x := self.search.beside(q)) is not None)]
+        best = max(self._rank_at(place) for place in places)
+        at = next(place for place in places if self._rank_at(place) == best)
+        J = self.search.jacobian(at)
         rows, columns = J.shape
         left = np.linalg.svd(J)[0][:, best:] if rows and columns else np.zeros((rows, 0))
         unique = [bool(np.abs(left[k]).max(initial=0.0) < 1e-6) for k in range(rows)]
@@ -193,126 +136,11 @@ class _Search:
         independent = self._independent(J, best)
         massless = [self._massless(place, best) for place in places]
         if all(massless):
-            raise _no_inertia(massless[0] or [])
+            raise self._no_inertia(massless[0] or [])
         position_rank = self._rank_of(J[: sum(e.holonomic for e in self.equations)])
         place = [float(x) for x in q]
         counts = (best, position_rank, rows - best, columns - best)
         return Assembly(place, *counts, unique, independent)
-
-    # -- Newton's method
-
-    def _start(self) -> list[float]:
-        """The joints' start values, at rest where there are none."""
-        q = [0.0] * len(self.tree.positions)
-        resolve = self.numeric.resolve
-        for link in self.tree.links:
-            places = [freedom.index for freedom in link.place.positions]
-            joint = link.joint
-            if len(places) != len(joint.rest()) or not places:
-                continue
-            given = joint.rest() if joint.start is None else joint.start
-            values = list(given) if isinstance(given, (tuple, list)) else [given]
-            for place, freedom, value in zip(places, link.place.positions, values, strict=False):
-                if freedom.ratio == 1:
-                    q[place] = float(resolve(value))
-        self._measured_from_ground(q)
-        return q
-
-    def _measured_from_ground(self, q: list[float]) -> None:
-        """Start values are the joints' own: add what their near bodies have turned."""
-        for link in self.tree.links:
-            if link.place.less[0]:
-                (own,) = link.place.positions
-                at, _ = coordinates(link.place, tuple(q), (0.0,) * len(self.tree.velocities))
-                q[own.index] += q[own.index] - at[0]
-
-    def close(self, q: list[float]) -> float:
-        """Move q onto the constraints as far as that goes; the largest violation that remains."""
-        np = self.np
-        self.tree.normalise(q)
-        phi = self._position(q)
-        gap = float(np.abs(phi).max(initial=0.0))
-        for _ in range(STEPS):
-            if gap < CLOSED * 1e-3:
-                break
-            J = self._jacobian(q)[self.sought]
-            step = -np.linalg.lstsq(J, phi, rcond=1e-10)[0]
-            largest = float(np.abs(step).max(initial=0.0))
-            step *= min(1.0, LARGEST_STEP / max(largest, 1e-300))
-            for _ in range(12):
-                moved = self._moved(q, step)
-                ahead = self._position(moved)
-                if np.linalg.norm(ahead) < np.linalg.norm(phi):
-                    break
-                step /= 2
-            else:
-                break
-            q[:], phi = moved, ahead
-            gap = float(np.abs(phi).max(initial=0.0))
-        return gap
-
-    def _moved(self, q: list[float], step: Any) -> list[float]:
-        """``q + N(q) step``."""
-        rates = self.numeric.coordinate_rates(q, list(step))
-        moved = [x + dx for x, dx in zip(q, rates, strict=True)]
-        for k, value in self.held.items():
-            moved[k] = value
-        self.tree.normalise(moved)
-        return moved
-
-    def _position(self, q: list[float]) -> Any:
-        return self.np.array(self.numeric.constraints(q), float)[self.sought]
-
-    def _jacobian(self, q: list[float]) -> Any:
-        """J, held coordinates left out of it."""
-        J = self.np.array(self.numeric.constraint_jacobian(q), float)
-        J = J.reshape(len(self.equations), len(self.tree.velocities))
-        for link in self.tree.links:
-            for at, rate in zip(link.place.positions, link.velocities, strict=False):
-                if at.index in self.held:
-                    J[:, rate.index] = 0.0
-        return J
-
-    def _flipped(self, q: list[float]) -> bool:
-        """Whether a chord stands the wrong way round: its equations hold for axes against each other, too."""
-        chords = self.numeric.chords(q, [0.0] * len(self.tree.velocities))
-        return any(self._turned_over(closure, chords) for closure in self.tree.closures)
-
-    def _turned_over(self, closure: Closure, chords: Chords) -> bool:
-        joint = closure.component
-        if not isinstance(joint, Joint) or not closure.restrictions:
-            return False
-        rotation, displacement = chords.seen(joint.name)
-        try:
-            at = joint.measured(self.numeric.algebra, rotation, displacement)
-        except ModelError:
-            return False
-        motion = joint.motion(self.numeric.algebra, at, (0.0,) * joint.freedoms)
-        differences = (
-            abs(a - b)
-            for mine, given in zip(motion.rotation.matrix(), rotation, strict=True)
-            for a, b in zip(mine, given, strict=True)
-        )
-        return bool(max(differences) > 1e-6)
-
-    # -- what is found there
-
-    def beside(self, q: list[float], spread: float = 0.05) -> list[float] | None:
-        """Another place that closes the loops, near the first."""
-        near = [x + self.draw.uniform(-spread, spread) for x in q]
-        for k, value in self.held.items():
-            near[k] = value
-        try:
-            return near if self.close(near) < CLOSED and not self._flipped(near) else None
-        except (ArithmeticError, ValueError, ModelError):
-            return None
-
-    def _rank(self, q: list[float]) -> int:
-        return self._rank_of(self._jacobian(q))
-
-    def _rank_of(self, J: Array) -> int:
-        values = self.np.linalg.svd(J, compute_uv=False)
-        return int((values > DEPENDENT * values.max(initial=0.0)).sum())
 
     def _independent(self, J: Array, rank: int) -> list[int]:
         """Velocities to keep: those declared last give way as long as the constraints determine them."""
@@ -333,6 +161,7 @@ class _Search:
         """Refuse prescribed motions that contradict each other."""
         np = self.np
         v = [0.0] * len(self.tree.velocities)
+        joints = {n for n, end in self.tree.ends.items() if isinstance(end.component, Joint)}
         for t in (self.numeric.t, self.numeric.t + 0.37):
             numeric = self.numeric.at(t)
             rates = -np.array(numeric.constraint_rates(q, v), float)
@@ -344,16 +173,17 @@ class _Search:
                     for e, x in zip(self.equations, worst, strict=True)
                     if abs(x) > 1e-3 * np.abs(worst).max()
                 )
-                problem = (
-                    f"over-driven: what they prescribe contradicts itself ({', '.join(names)}); "
-                    "free one of them"
-                )
-                raise ModelError(f"constraints {_quoted(names)}", problem)
+                driven = [n for name in names for n in self._driven_with(name)]
+                plain = [n for n in names if n in joints and not any(self.tree.ends[n].drive)]
+                whole = [n for n in dict.fromkeys([*names, *driven]) if n not in plain]
+                whole = whole or list(names)
+                problem = f"is over-driven: {quoted(whole)} contradict each other; free one of them"
+                raise ModelError(self.search.who(whole[0]), problem)
 
     def _massless(self, q: list[float], rank: int) -> list[str] | None:
         """The velocities of a motion that the constraints allow and nothing with mass takes part in."""
         np = self.np
-        J = self._jacobian(q)
+        J = self.search.jacobian(q)
         M = np.array(self.numeric.mass_matrix(q), float)
         allowed = np.linalg.svd(J)[2][rank:].T if len(J) else np.eye(len(M))
         if not allowed.shape[1]:
@@ -365,34 +195,31 @@ class _Search:
         pairs = zip(self.tree.velocities, motion, strict=True)
         return [quantity.name for quantity, x in pairs if x > 0.1 * motion.max()]
 
-    def _refusal(self, q: list[float] | None) -> ModelError:
-        """What to tell where no position closes the loops: the worst chord and its circuit."""
-        if q is None:
-            names = dict.fromkeys(e.component for e in self.equations)
-            problem = "are not defined at any position tried; give `start` values near one"
-            return ModelError(f"constraints {_quoted(names)}", problem)
-        phi = self.np.abs(self._position(q))
-        worst = self.equations[self.sought[int(phi.argmax())]]
-        circuit = self.derivation.circuit_of(worst.component)
-        kind = self.tree.ends[worst.component].component.kind
-        held = f" with {_quoted([self.tree.positions[k].name for k in self.held])} held" * bool(
-            self.held
+    def _no_inertia(self, names: Sequence[str]) -> ModelError:
+        """What to tell of a motion without inertia: it is one of these velocities together."""
+        places = [quantity.name for quantity in self.tree.velocities]
+        link = next(
+            link
+            for link in self.tree.links
+            if any(freedom.index == places.index(names[0]) for freedom in link.velocities)
         )
         problem = (
-            f"closes the circuit {' - '.join(circuit)}, which cannot be assembled{held}: a gap of "
-            f"{phi.max():.3g} remains. Check lengths and axes, or give `start` values near a position"
+            f"moves no inertia that the loops allow to move ({quoted(names)}): the mass matrix is singular "
+            "there. Give the bodies mass and inertia"
         )
-        who = "joint" if isinstance(self.tree.ends[worst.component].component, Joint) else kind
-        return ModelError(f'{who} "{worst.component}"', problem)
+        return ModelError(f'joint "{link.joint.name}"', problem)
 
+    def _driven_with(self, chord: str) -> list[str]:
+        """The prescribed joints in the circuit of a chord."""
+        return [
+            name
+            for name in self.derivation.circuit_of(chord)[:-1]
+            if name in self.tree.ends and any(self.tree.ends[name].drive)
+        ]
 
-def _no_inertia(names: Sequence[str]) -> ModelError:
-    problem = (
-        "moves no inertia that the loops allow to move: the mass matrix is singular there. Give the "
-        "bodies mass and inertia"
-    )
-    return ModelError(f"motion of {_quoted(names)}", problem)
+    def _rank_at(self, q: list[float]) -> int:
+        return self._rank_of(self.search.jacobian(q))
 
-
-def _quoted(names: Sequence[str] | Mapping[str, Any]) -> str:
-    return ", ".join(f'"{name}"' for name in names)
+    def _rank_of(self, J: Array) -> int:
+        values = self.np.linalg.svd(J, compute_uv=False)
+        return int((values > DEPENDENT * values.max(initial=0.0)).sum())

@@ -197,6 +197,9 @@ def independent(f: Functions) -> list[tuple[int, int]]:
                 f"known: {known}"
             )
             raise ModelError("formulation", problem)
+    for name in wanted:
+        if wanted.count(name) > 1:
+            raise ModelError("formulation", f'independent: "{name}" is named twice')
     if len(wanted) != assembly(f).freedoms:
         problem = (
             f"independent: {len(wanted)} coordinates for {assembly(f).freedoms} degrees of freedom"

@@ -9,6 +9,7 @@ Each arrow is one pure function.
 
 from __future__ import annotations
 
+import random
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -26,7 +27,7 @@ from linegraph.loads import Applied, applied
 from linegraph.mass_matrix import mass_matrix
 from linegraph.parameters import Parameter, resolver, valued
 from linegraph.regularity import require_regular
-from linegraph.scope import relations
+from linegraph.scope import relations, require_linear
 from linegraph.transfer import transfer
 from linegraph.walk import kinematic_tree
 
@@ -110,6 +111,14 @@ class Derivation:
             return [chord]
         row = circuit.entries[circuit.rows.index(chord)]
         return [*(n for j in row if (n := circuit.columns[j]) in names), chord]
+
+    def require_relations(self) -> None:
+        """Refuse relations that are no constraints of velocity."""
+        if self.model.relations:
+            numeric = self.numeric(t=0.37)
+            require_linear(
+                self.model, numeric.tree, numeric.algebra, numeric.parameters, random.Random(0)
+            )
 
     @cached_property
     def assembled(self) -> Assembly:
@@ -278,6 +287,7 @@ def derive(model: Model) -> Derivation:
         if derivation.structure.closed and all(
             p.value is not None for p in model.parameters.values()
         ):
+            derivation.require_relations()
             _ = derivation.assembled
     except ModelError as error:
         raise placed(error, model) from None

@@ -35,7 +35,7 @@ from linegraph.topology import Topology, choose_forest
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from linegraph.graph import Projection, SystemGraph
+    from linegraph.graph import Edge, Projection, SystemGraph
     from linegraph.model import Model
 
 INERTIA_WEIGHT = 7.0
@@ -73,16 +73,15 @@ def formulate(model: Model, graph: SystemGraph) -> Formulation:
     if not model.bodies:
         raise ModelError(f'model "{model.name}"', "has no bodies: there is nothing to derive")
     _require_known(model)
-    absolute = tuple(name for name in model.bodies if model.choices.kind(name) == ABSOLUTE)
-    absolute += tuple(
-        name
-        for name in model.bodies
-        if f"{name}/inertia" in model.choices.tree and name not in absolute
-    )
+    absolute = _absolute(model)
     projection = graph[TRANSLATION.name]
-    translation = choose_forest(
-        projection, _weights(model, projection), (GROUND,), _wanted(model, absolute)
-    )
+    # rigid arms hold bodies together: they are branches before all else
+    arms = [edge.name for edge in projection.edges if _is_arm(model, edge)]
+    wanted = [*arms, *_wanted(model, absolute)]
+    try:
+        translation = choose_forest(projection, _weights(model, projection), (GROUND,), wanted)
+    except ModelError as error:
+        raise _explained(error, model) from None
     _require_held(model, translation, absolute)
     names = {joint.name for joint in model.joints}
     branches = frozenset(edge.name for edge in translation.branches if edge.name in names)
@@ -93,11 +92,53 @@ def formulate(model: Model, graph: SystemGraph) -> Formulation:
     return Formulation(translation, rotation, branches, absolute, level, chords)
 
 
+def _explained(error: ModelError, model: Model) -> ModelError:
+    """Say which joints were wanted because they are coupled."""
+    coupled = [name for name in _coupled(model) if name not in model.choices.tree]
+    if not coupled:
+        return error
+    names = ", ".join(dict.fromkeys(coupled))
+    problem = f"{error.problem}; coupled joints have to be branches, too: {names}"
+    wanted = any(error.thing == f'branch "{name}"' for name in model.choices.tree)
+    return ModelError(error.thing if wanted else f'joint "{coupled[0]}"', problem)
+
+
+def _is_arm(model: Model, edge: Edge) -> bool:
+    """Whether an edge is a rigid arm of a body or of ground."""
+    return edge.component in (GROUND, *model.bodies) and edge.name.startswith(
+        f"{edge.component}/arm"
+    )
+
+
+def _absolute(model: Model) -> tuple[str, ...]:
+    """The bodies whose inertia edge is a branch in both trees.
+
+    Where all bodies are to be absolute, those at the head of a joint that has to be a branch are not.
+    """
+    held = {*_coupled(model), *(j.name for j in model.joints if isinstance(j, Compound))}
+    terminals = model.terminals()
+    ends = (joint.between[::-1] for joint in model.joints if joint.name in held)
+    bodies = [[terminals[end][0] for end in pair if end in terminals] for pair in ends]
+    spared = {next((b for b in pair if b != GROUND), "") for pair in bodies}
+    spared -= set(model.choices.of_body)
+    return tuple(
+        name
+        for name in model.bodies
+        if (model.choices.kind(name) == ABSOLUTE and name not in spared)
+        or f"{name}/inertia" in model.choices.tree
+    )
+
+
+def _coupled(model: Model) -> list[str]:
+    """The joints that follow others or are followed."""
+    joints = {joint.name for joint in model.joints if joint.freedoms == 1}
+    return [n for c in model.couplings for n in (c.joint, c.master) if n in joints]
+
+
 def _wanted(model: Model, absolute: tuple[str, ...]) -> list[str]:
     """Edges that must be branches: as the user says, and those that cannot be chords."""
-    joints = {joint.name for joint in model.joints if joint.freedoms == 1}
-    coupled = [n for c in model.couplings for n in (c.joint, c.master) if n in joints]
-    wanted = [*(f"{name}/inertia" for name in absolute), *model.choices.tree, *coupled]
+    inertia = (f"{name}/inertia" for name in absolute)
+    wanted = [*inertia, *model.choices.tree, *_coupled(model)]
     return list(dict.fromkeys(wanted))
 
 

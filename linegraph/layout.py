@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from linegraph.planarity import Angle
     from linegraph.vector import Scalar
 
+NOT_SMOOTH = "has no finite value, rate and acceleration"
 EFFORT_UNITS = {"rad/s": "N*m", "m/s": "N"}
 
 
@@ -157,6 +158,10 @@ def _add_coordinates(layout: Layout, joint: Joint, formulation: Formulation) -> 
         return True
     own = joint if angle.less is not None else turning(joint.name, angle.body)
     layout.places[joint.name] = _placed(layout, own)
+    if angle.less is not None:
+        about = f"of {angle.body} against ground, about the axis of {joint.name}"
+        layout.positions[-1] = replace(layout.positions[-1], about=f"angle {about}")
+        layout.velocities[-1] = replace(layout.velocities[-1], about=f"rate {about}")
     return False
 
 
@@ -267,6 +272,8 @@ def _motion(
         return lifted(resolver(Jets(algebra), values)(given))
     except ModelError as error:
         raise ModelError(who, f"motion: {error.problem}") from None
+    except ArithmeticError:
+        raise ModelError(who, f"motion: {NOT_SMOOTH}") from None
 
 
 def _has_plain_rates(joint: Joint) -> bool:

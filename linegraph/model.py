@@ -9,7 +9,7 @@ from linegraph.assemblies import add_basement, add_rotor, followers_at, locked
 from linegraph.body import GROUND, MASS_CENTER, Body, Placement, inertia_of, unit
 from linegraph.checks import finite, plain, vector
 from linegraph.choices import Choices, chosen
-from linegraph.constraints import Blade, Constraint, Driver, Rod, Rolling
+from linegraph.constraints import Blade, Constraint, Driver, Rod, Rolling, aligned
 from linegraph.constraints.relation import Relation
 from linegraph.coupling import Coupling
 from linegraph.elements import Damper, Element, Friction, Law, Load, Spring, Stop
@@ -72,9 +72,7 @@ class Model:
         snap: float = SNAP,
     ) -> None:
         """Start with ground alone."""
-        self.name = name
-        self.about = about
-        self.snap = snap
+        self.name, self.about, self.snap = name, about, snap
         self.gravity = gravity
         self.bodies: dict[str, Body] = {}
         self.ground = BodyHandle(self, GROUND)
@@ -189,6 +187,7 @@ class Model:
         """Whether a prescribed motion or a law names the time t."""
         values = [value for joint in self.joints for value in _values(joint.drive)]
         acting = (*self._elements.values(), *self._constraints.values())
+        values += [output.value for output in self.outputs]
         values += [value for component in acting for value in component.values()]
         return any("t" in names_in(value) for value in values)
 
@@ -252,6 +251,7 @@ class Model:
         if joint.name in self._joints:
             raise ModelError(who, "the name is taken; names of joints are unique")
         joint = replace(joint, axis=unit(vector(joint.axis, who), who))
+        joint.require_start()
         self._joints[joint.name] = joint
         return joint
 
@@ -301,11 +301,12 @@ class Model:
         if any(limit.name in taken for taken in (self._joints, self._elements, self._constraints)):
             raise ModelError(who, "the name is taken; joints, elements and constraints share names")
         finite(limit.values(), who)
-        self._constraints[limit.name] = limit
-        return limit
+        found: Limit = aligned(limit, who)
+        self._constraints[limit.name] = found
+        return found
 
     def output(self, name: str, value: Any, unit: str = "", about: str = "") -> Output:
-        """Ask for a quantity in the emitted code; see `observation` for what its expression may name.
+        """Ask for a quantity in the emitted code; `observation` says what its expression may name.
 
         Raises:
             ModelError: the name is taken.
@@ -395,6 +396,5 @@ class Model:
 
 def _values(drive: Any) -> tuple[Any, ...]:
     """The values of a prescribed motion."""
-    if drive is None or drive == BY_INPUT:
-        return ()
-    return tuple(drive) if isinstance(drive, (tuple, list)) else (drive,)
+    given = tuple(drive) if isinstance(drive, (tuple, list)) else (drive,)
+    return () if given in ((None,), (BY_INPUT,)) else given

@@ -7,9 +7,9 @@ star with its centre in 0:
     branches   2k-1: 0 -> B_k    2k: 0 -> C_k
     chords     C_1 -> B_1, and for every other body j the pair C_p -> B_j (inner), C_j -> B_j (outer)
 
-Without branch 1, whose through variable is the basement's reaction, 2n-1 branches face 2n-1 chords. Corrected
-here are P*, which the print does not define, Z_1, and the terms of translational joints in B, which it does
-not give. For reading and for proof; `paper` has the joint form. Vectors are resolved in ground axes.
+Without branch 1, the basement's reaction, 2n-1 branches face 2n-1 chords. Corrected are P*, which the print
+does not define, Z_1, and the terms of translational joints in B, which it does not give. Vectors are resolved
+in ground axes.
 """
 
 from __future__ import annotations
@@ -124,12 +124,11 @@ def printed_matrices(
 ) -> PrintedMatrices:
     """The star tree at (q, v) and its equations (12)-(15).
 
-    The basement is whatever moves as prescribed: ground, and links that only prescribed joints connect
-    to it. `applied` are forces and torques on the links besides weight, and efforts in the joints.
+    The basement is ground and what only prescribed joints connect to it. `applied` are forces and torques
+    on the links besides weight, and efforts in the joints.
 
     Raises:
-        ModelError: not exactly one body is connected to the basement, as the paper demands; or a link
-            without mass has a first moment.
+        ModelError: not exactly one body is on the basement; or a link without mass has a first moment.
     """
     return equations(_star_tree(tree, arms(tree, algebra, q, v), applied))
 
@@ -366,7 +365,7 @@ def _basement_motion(
 
 
 def zeros(count: int) -> Column:
-    """Nothing on every edge."""
+    """Zeros."""
     return [ZERO] * count
 
 

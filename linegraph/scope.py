@@ -10,6 +10,7 @@ from linegraph.layout import coordinates
 from linegraph.parameters import names_in, resolver
 
 if TYPE_CHECKING:
+    import random
     from collections.abc import Mapping, Sequence
 
     from linegraph.algebra import Algebra
@@ -114,8 +115,48 @@ def relations(
             change = lifted(resolver(jets, values)(relation.rate)).dx
         except ModelError as error:
             raise ModelError(who, error.problem) from None
+        except ArithmeticError:
+            raise ModelError(who, "has no finite value or derivative at some state") from None
         found.append((row, right, -change))
     return found
+
+
+def require_linear(
+    model: Model,
+    tree: KinematicTree,
+    algebra: Algebra,
+    parameters: Mapping[str, Scalar],
+    draw: random.Random,
+) -> None:
+    """Refuse relations that are not linear in rates, or have none; judged at random states over floats.
+
+    Raises:
+        ModelError: names the relation.
+    """
+    size = len(tree.velocities)
+    q = [draw.uniform(-1, 1) for _ in tree.positions]
+    tree.normalise(q)
+    a, b = ([draw.uniform(-1, 1) for _ in range(size)] for _ in range(2))
+    both = [x + y for x, y in zip(a, b, strict=True)]
+    for relation in tree.relations:
+        who = f'relation "{relation.name}"'
+        _require_no_input(model, relation)
+        found = []
+        for v in ([0.0] * size, a, b, both):
+            try:
+                values = scope(model, tree, algebra, parameters, (tuple(q), tuple(v)))
+                found.append(float(resolver(algebra, values)(relation.rate)))
+            except ModelError as error:
+                raise ModelError(who, error.problem) from None
+            except ArithmeticError:
+                raise ModelError(who, "has no finite value at a state like any other") from None
+        rest, *shares, whole = found
+        scale = sum(map(abs, found))
+        if abs(whole + rest - sum(shares)) > 1e-9 * scale:
+            raise ModelError(who, "is not linear in the rates der(...)")
+        if max(abs(x - rest) for x in shares) <= 1e-12 * scale:
+            problem = "constrains no velocity: it must have rates der(...) of coordinates"
+            raise ModelError(who, problem)
 
 
 def _require_no_input(model: Model, relation: Relation) -> None:

@@ -44,8 +44,28 @@ def transfer(source: Numeric, q: Sequence[float], v: Sequence[float], target: Nu
     links = [_link_frame(tree, i, bodies) for i in range(len(tree.links))]
     for link, far in zip(tree.links, links, strict=True):
         near = links[link.parent] if link.parent >= 0 else GROUND_FRAME
-        _measure(target, link, near, far, found)
+        if not _copied(source, q, v, link, found):
+            _measure(target, link, near, far, found)
     return found
+
+
+def _copied(
+    source: Numeric, q: Sequence[float], v: Sequence[float], link: Link, found: State
+) -> bool:
+    """Take over the coordinates of a joint that has the same ones in both trees, full turns included."""
+    place = source.tree.layout.own(link.joint.name)
+    plain = place is not None and not (place.level or link.place.level or place.drive)
+    if not plain or place is None or len(place.positions) != len(link.place.positions):
+        return False
+    for old, new, values, into in (
+        (place.positions, link.place.positions, q, found[0]),
+        (place.velocities, link.velocities, v, found[1]),
+    ):
+        for a, b in zip(old, new, strict=True):
+            if a.ratio != 1 or b.ratio != 1 or a.offset != 0 or b.offset != 0:
+                return False
+            into[b.index] = float(values[a.index])
+    return True
 
 
 def body_frames(numeric: Numeric, q: Sequence[float], v: Sequence[float]) -> dict[str, Frame]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import functools
+import itertools
 import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -38,6 +39,13 @@ CLOSED = (
 )
 BIG = ("stewart_platform",)
 """What a compiler optimizes for longer than the test runs."""
+
+NAMES = {
+    "across": "ACROSS_NAMES",
+    "reactions": "REACTION_NAMES",
+    "outputs": "OUTPUT_NAMES",
+    "power": "POWER_NAMES",
+}
 
 SPREAD = 0.1
 
@@ -82,7 +90,7 @@ class System:
 
     def named(self, function: str, *arguments: Any, t: float = 0.0) -> dict[str, float]:
         """The value of `across`, `reactions`, `outputs` or `power` by name."""
-        names = getattr(self.py, f"{function.removesuffix('s').upper()}_NAMES")
+        names = getattr(self.py, NAMES[function])
         out: list[tuple[int, ...]] = [(len(names),)]
         if function == "power":
             out.append((2,))
@@ -156,7 +164,7 @@ class System:
         q, v = np.array(q, float), np.array(v, float)
         slope = self._slope(u)
         times = np.linspace(0.0, end, pieces + 1)
-        for begin, stop in zip(times[:-1], times[1:], strict=True):
+        for begin, stop in itertools.pairwise(times):
             done = solve_ivp(
                 slope,
                 (begin, stop),

@@ -192,7 +192,7 @@ def test_statuses_are_those_of_the_header() -> None:
 
 def test_the_other_page_names_all_multipliers() -> None:
     other = (ROOT / "docs" / "model_file.md").read_text("utf-8")
-    options = {"rod": {"length": 1}, "driver": {"x": 0, "y": 0, "z": 0}}
+    options = {"rod": {"length": 1}, "driver": {"x": 0, "y": 0, "z": 0}, "rolling": {"radius": 1}}
     for kind, make in CONSTRAINTS.items():
         limit = make("NAME", ("ground", "b"), **options.get(kind, {}))
         for quantity, _ in limit.equations():

@@ -31,7 +31,12 @@ def emitted(robot: Path, folder: Path, **environment: str) -> dict[str, str]:
     return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
 
 
-MODELS = ("panda/panda.urdf", "anymal_c/anymal.urdf", "bricard/bricard.toml", "bicycle/bicycle.toml")
+MODELS = (
+    "panda/panda.urdf",
+    "anymal_c/anymal.urdf",
+    "bricard/bricard.toml",
+    "bicycle/bicycle.toml",
+)
 
 
 @pytest.mark.parametrize("robot", MODELS)

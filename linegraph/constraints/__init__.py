@@ -1,6 +1,6 @@
 """The register of constraints: one file each, one line here, one line in `model.Model`."""
 
-from linegraph.constraints.base import Constraint, Instant, Pose, Prescribed, Row
+from linegraph.constraints.base import Constraint, Instant, Pose, Prescribed, Row, aligned
 from linegraph.constraints.blade import Blade
 from linegraph.constraints.driver import Driver
 from linegraph.constraints.rod import Rod
@@ -21,4 +21,5 @@ __all__ = [
     "Rod",
     "Rolling",
     "Row",
+    "aligned",
 ]

@@ -10,8 +10,11 @@ relative motion is what the constraint fixes. All types answer the same question
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+from linegraph.body import unit
+from linegraph.checks import vector
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -117,3 +120,13 @@ class Constraint:
 
 
 _PLACES = ("name", "between")
+
+
+def aligned(limit: Any, who: str) -> Any:
+    """A constraint with its axis, if it has one, scaled to length 1.
+
+    Raises:
+        ModelError: the axis has no length.
+    """
+    axis = getattr(limit, "axis", None)
+    return limit if axis is None else replace(limit, axis=unit(vector(axis, who), who))

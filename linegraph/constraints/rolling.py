@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from linegraph.constraints.base import Constraint, Pose, Row
+from linegraph.errors import ModelError
 from linegraph.program import Quantity
 from linegraph.vector import Scalar, Vector, add, cross, dot, negate, scale, subtract, times
 
@@ -41,6 +42,14 @@ class Rolling(Constraint):
     crown: Any = 0
     kind = "rolling"
     needs = (("radius",),)
+
+    def __post_init__(self) -> None:
+        """Raises `ModelError` where the wheel has no size."""
+        for name, size in (("radius", self.radius), ("crown", self.crown)):
+            if isinstance(size, (int, float)) and size < 0:
+                raise ModelError(f'rolling "{self.name}"', f"its {name} is negative ({size})")
+        if self.radius == 0 and self.crown == 0:
+            raise ModelError(f'rolling "{self.name}"', "has no radius")
 
     def equations(self) -> tuple[tuple[Quantity, bool], ...]:
         """Normal, along and across."""

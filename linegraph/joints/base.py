@@ -164,6 +164,25 @@ class Joint:
         """The q at which head and tail frames coincide."""
         return (0.0,) * len(self.positions())
 
+    def require_start(self) -> None:
+        """Refuse start values that are no coordinates.
+
+        Raises:
+            ModelError: another number of them than of coordinates, or a quaternion without length.
+        """
+        if self.start is None:
+            return
+        given = self.start if isinstance(self.start, (tuple, list)) else (self.start,)
+        names = [quantity.name for quantity in self.positions()]
+        who = f'joint "{self.name}"'
+        if len(given) != len(names):
+            problem = (
+                f"start has {len(given)} values for {len(names)} coordinates: {', '.join(names)}"
+            )
+            raise ModelError(who, problem)
+        if len(names) > self.freedoms and all(x == 0 for x in given[-4:]):
+            raise ModelError(who, "start has a quaternion of length zero; no turn is (0, 0, 0, 1)")
+
     def resolved(self, resolve: Callable[[Any], Scalar]) -> Self:
         """The same joint with the model values `motion` reads as scalars of an algebra."""
         return self

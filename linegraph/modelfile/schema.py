@@ -10,8 +10,9 @@ import json
 from pathlib import Path
 from typing import Any
 
+from linegraph.modelfile.expressions import Scope
 from linegraph.modelfile.kinds import Number
-from linegraph.modelfile.tables import FLAT, HEAD, INPUT, PARAMETER, TYPES
+from linegraph.modelfile.tables import FLAT, HEAD, INPUT, OUTPUT, PARAMETER, TYPES
 
 PATH = Path(__file__).with_name("schema.json")
 DRAFT = "http://json-schema.org/draft-07/schema#"
@@ -25,6 +26,8 @@ def schema() -> dict[str, Any]:
     }
     parameter = {"anyOf": [*Number().schema()["anyOf"], PARAMETER.schema()]}
     properties["parameters"] = _named(parameter, "numbers that stay symbols")
+    output = {"anyOf": [*Number(Scope.OUTPUT).schema()["anyOf"], OUTPUT.schema()]}
+    properties["outputs"] = _named(output, "what the emitted code returns by name")
     properties["inputs"] = _named(INPUT.schema(), "numbers known at run time")
     properties |= {key: table.schema() for key, table in FLAT.items() if table is not None}
     properties |= {key: _named(table.schema(), table.about) for key, table in TYPES.items()}

@@ -242,7 +242,7 @@ FORMULATION = Table(
             "what a closed mechanism is reduced to; chosen automatically if left out",
         ),
         "baumgarte": Field(
-            Items(Number(), 2, "a list [alpha, beta]"),
+            Items(Number(least=0), 2, "a list [alpha, beta]"),
             "stabilises constraints in forward_dynamics: -2 alpha rate - beta^2 error (1/s)",
         ),
         "reactions": Field(
