@@ -8,8 +8,7 @@ star with its centre in 0:
     chords     C_1 -> B_1, and for every other body j the pair C_p -> B_j (inner), C_j -> B_j (outer)
 
 Without branch 1, the basement's reaction, 2n-1 branches face 2n-1 chords. Corrected are P*, which the print
-does not define, Z_1, and the terms of translational joints in B, which it does not give. Vectors are resolved
-in ground axes.
+does not define, Z_1, and B, in which translational joints are missing. Vectors are in ground axes.
 """
 
 from __future__ import annotations
@@ -148,8 +147,7 @@ def equations(star: StarTree) -> PrintedMatrices:
         Z_1 = -H I H^T V                    printed as H P* x diag X Z_2, which (14) has already
         Z_2 = -H m H^T (H P* x diag X)^T V
 
-    where w = (H P*)^T (X_c^r - 1 X_1^r) is the angular velocity of each chord's tail. The last two terms of
-    B_3 and the line of K are missing in print; W^t is `W_slide`.
+    w = (H P*)^T (X_c^r - 1 X_1^r) is of each chord's tail, W^t is `W_slide`. Two terms of B_3 are not in print.
     """
     h = Operators(star)
     rest = zeros(len(star.chords) - 1)

@@ -701,7 +701,7 @@ QUIET: dict[str, tuple[dict[str, float], Callable[[System], tuple[Array, Array]]
         lambda s: s.complete(s.start, s.start[leg_places(s)], [0.02, 0, -0.02, 0.01, 0.01, 0]),
     ),
     "rolling_disc": ({}, lambda s: s.complete(s.start, [0, 0.2, 0], [1.0, 0.3, 12.0])),
-    "bicycle": ({}, lambda s: s.complete(s.start, [0.05, 0, 0], [0, 0, -5 / 0.3])),
+    "bicycle": ({}, lambda s: s.complete(s.start, [0.1, 0, 0], [0, 0, -5 / 0.3])),
     "car_axis": ({"r": 0}, lambda s: s.project(s.start, s.vector(place_x=-0.5, height=0.3))),
     "crane_hoist": ({"rate": 0}, lambda s: s.project(s.start, [1, 1, 2, 0, 0.1, 0.2, 0.3])),
     "parallelograms": (
