@@ -88,10 +88,11 @@ def statuses(module: Module) -> dict[str, dict[int, str]]:
         if program.name not in found:
             own: dict[int, str] = {}
             if isinstance(program, Routine):
-                found[program.name] = dict(program.statuses)
-                return found[program.name]
-            inherited = (visit(programs[call.program]).items() for call in program.calls)
-            reasons = [(check.status, check.about) for check in program.checks]
+                called, reasons = program.uses, list(program.statuses)
+            else:
+                called = tuple(call.program for call in program.calls)
+                reasons = [(check.status, check.about) for check in program.checks]
+            inherited = (visit(programs[name]).items() for name in called)
             for status, about in chain(*inherited, reasons):
                 known = own.get(status, about)
                 own[status] = known if about in known else f"{known}; or {about}"

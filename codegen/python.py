@@ -27,13 +27,13 @@ def render(module: Module) -> dict[str, str]:
     """The one file of a module."""
     statuses = layout.statuses(module)
     bodies = {program.name: _body(module, program) for program in module.programs}
-    closed = any(isinstance(program, Routine) for program in module.programs)
+    alone = any(_sizes(program) for program in module.programs)
     text = templates.fill(
         "python/module.py.jinja",
         unary=_called(bodies, 1),
         binary=_called(bodies, 2),
         name=module.name,
-        helpers=closed,
+        helpers=alone,
         quaternions=routines.quaternions(module),
         head=_indented(layout.head(module), 0),
         counts=list(layout.counts(module).items()),
@@ -164,7 +164,7 @@ def _join(module: Module, result: Result) -> str:
 
 def _sizes(program: Program | Routine) -> str:
     """Of a routine, which takes one state at a time, how many components each result has; else nothing."""
-    if not isinstance(program, Routine):
+    if not isinstance(program, Routine) or program.algorithm in routines.BATCHED:
         return ""
     return ", ".join(str(math.prod(result.shape)) for result in program.results) + ","
 

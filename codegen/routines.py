@@ -23,8 +23,13 @@ HELPERS = {
     "complete": ("eliminate", "determined", "unit"),
     "reduction": ("eliminate", "determined"),
     "reduced_equations": (),
+    "after_dynamics": (),
 }
 """The algorithms, and what they share."""
+
+
+BATCHED = ("after_dynamics",)
+"""Algorithms that only call others, so that they take many states at once where those do."""
 
 
 def helpers(module: Module) -> list[str]:
@@ -44,8 +49,8 @@ def independent(module: Module) -> tuple[int, ...]:
 
 
 def _detail(module: Module, name: str) -> tuple[int, ...]:
-    found = [dict(p.details)[name] for p in module.programs if isinstance(p, Routine)]
-    return tuple(found[0]) if found else ()
+    details = (dict(p.details) for p in module.programs if isinstance(p, Routine))
+    return next((tuple(found[name]) for found in details if name in found), ())
 
 
 def body(
@@ -59,7 +64,8 @@ def body(
     counts = layout.counts(module)
     text = templates.fill(
         f"{language}/routines/{routine.algorithm}.jinja",
-        counts={"NP": 0, "NI": 0, **counts},
+        counts={"NC": 0, "NP": 0, "NI": 0, **counts},
+        results=", ".join(result.name for result in routine.results),
         macro=module.name.upper(),
         call=_calling(module, routine, prefix),
         texts={status: quote(about) for status, about in routine.statuses},

@@ -19,6 +19,7 @@ SINGULAR = (1, "the position is singular: more motions are free here than elsewh
 NO_INERTIA = (2, "the mass matrix is singular on the motions that the constraints allow")
 CONTRADICTION = (3, "the constraints contradict each other")
 NOT_CLOSED = (1, "no position that satisfies the constraints was found")
+SLIPPING = (2, "the constraints of velocity contradict each other")
 NOT_DETERMINED = (2, "the independent coordinates do not determine the others here")
 
 
@@ -117,7 +118,7 @@ def project(f: Functions) -> tuple[Program | Routine, ...]:
             ("q", "v"),
             results,
             "project",
-            (NOT_CLOSED, SINGULAR[:0] or (2, "the constraints of velocity contradict each other")),
+            (NOT_CLOSED, SLIPPING),
             (*calls, "coordinate_rates"),
         ),
     )

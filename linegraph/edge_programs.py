@@ -12,7 +12,6 @@ from linegraph.edges import (
     reaction_groups,
     reaction_quantities,
 )
-from linegraph.inverse_scheme import InverseScheme
 from linegraph.layout import EFFORT_UNITS
 from linegraph.observation import observed
 from linegraph.program import Argument, Call, Listing, Program, Quantity, Result, Routine
@@ -26,10 +25,9 @@ if TYPE_CHECKING:
 
 def across(f: Functions) -> tuple[Program | Routine, ...]:
     """Velocity and angular velocity across every joint, body, element and constraint."""
-    scheme = _scheme(f, None)
     entries = tuple(
         x
-        for linear, angular in scheme.across().values()
+        for linear, angular in f.scheme.across().values()
         for part in (linear, angular)
         for x in part
     )
@@ -45,10 +43,9 @@ def reactions(f: Functions) -> tuple[Program | Routine, ...]:
     names = _joints(f)
     if not names:
         return ()
-    scheme = _scheme(f, f.symbols("a"))
     entries: list[Scalar] = []
     for name in names:
-        force, torque = scheme.reaction(name)
+        force, torque = f.scheme.reaction(name)
         entries += [*force, *torque]
     result = Result("R", (len(entries),), tuple(entries), "reactions")
     given = ("q", "v", "a", "lam") if f.tree.closed else ("q", "v", "a")
@@ -57,13 +54,24 @@ def reactions(f: Functions) -> tuple[Program | Routine, ...]:
         f"its head, efforts included, for given accelerations{' and multipliers' * f.tree.closed}."
     )
     at = f.program("reactions_at", about, given, (result,))
-    about = "Reactions under the inputs u: forward dynamics, then `reactions_at`."
-    return at, _after_dynamics(f, "reactions", about, (result,))
+    arguments = ("q", "v", "u")
+    taken = tuple(Argument(x, f.sizes.get(x), f.texts[x]) for x in (*f.head, *arguments))
+    under = Routine(
+        "reactions",
+        "Reactions under the inputs u: forward dynamics, then reactions_at.",
+        taken,
+        (Result("R", result.shape, (), result.about),),
+        "after_dynamics",
+        (),
+        ("forward_dynamics", "reactions_at"),
+        (("then", "reactions_at"),),
+    )
+    return at, under
 
 
 def drives(f: Functions) -> tuple[Program | Routine, ...]:
     """The driving forces of joints in prescribed motion."""
-    found = _scheme(f, f.symbols("a")).drives()
+    found = f.scheme.drives()
     if not found:
         return ()
     result = Result("D", (len(found),), tuple(found.values()), "driving forces and torques")
@@ -73,7 +81,7 @@ def drives(f: Functions) -> tuple[Program | Routine, ...]:
 
 def power(f: Functions) -> tuple[Program | Routine, ...]:
     """Through times across of every edge, and its sums."""
-    found, sums = powers(_scheme(f, f.symbols("a")).edges())
+    found, sums = powers(f.scheme.edges())
     results = (
         Result("P", (len(found),), tuple(found.values()), "power that each edge delivers (W)"),
         Result("sums", (2,), sums, "sum over translation, and over rotation with levers: zero (W)"),
@@ -89,9 +97,7 @@ def outputs(f: Functions) -> tuple[Program | Routine, ...]:
     """What the model asks for by name."""
     if not f.model.outputs:
         return ()
-    entries, dynamic = observed(
-        f.model, f.tree, f.dag, f.values, f.chords, _state(f), _scheme(f, f.symbols("a"))
-    )
+    entries, dynamic = observed(f.model, f.tree, f.dag, f.values, f.chords, _state(f), f.scheme)
     result = Result("y", (len(entries),), tuple(entries), "outputs")
     about = "Outputs: the quantities that the model asks for by name."
     if dynamic:
@@ -103,7 +109,7 @@ def listings(f: Functions, chosen: Sequence[str]) -> tuple[Listing, ...]:
     """The names of everything these functions return."""
     found = []
     if "across" in chosen:
-        names = list(_scheme(f, None).across())
+        names = list(f.scheme.across())
         heading = (
             "across variables: of each edge velocity and angular velocity x, y, z, in ground axes"
         )
@@ -115,7 +121,7 @@ def listings(f: Functions, chosen: Sequence[str]) -> tuple[Listing, ...]:
         axes = reaction_axes(f.model)
         heading = f"reactions: of each joint force and torque x, y, z on its head, in {axes} axes"
         found.append(Listing("reaction", "NR", heading, quantities, ("R",), groups))
-    driven = _scheme(f, f.symbols("a")).drives() if "drives" in chosen else {}
+    driven = f.scheme.drives() if "drives" in chosen else {}
     if driven:
         known = {q.name: q for joint in f.model.joints for q in joint.velocities()}
         quantities = tuple(
@@ -123,7 +129,7 @@ def listings(f: Functions, chosen: Sequence[str]) -> tuple[Listing, ...]:
         )
         found.append(Listing("drive", "ND", "driving forces", quantities, ("D",)))
     if "power" in chosen:
-        names = list(powers(_scheme(f, f.symbols("a")).edges())[0])
+        names = list(powers(f.scheme.edges())[0])
         quantities = tuple(Quantity(name, "W", f"power of {name}") for name in names)
         found.append(Listing("power", "NE", "powers", quantities, ("P",)))
     if "outputs" in chosen and f.model.outputs:
@@ -141,22 +147,6 @@ def _joints(f: Functions) -> list[str]:
 
 def _state(f: Functions) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
     return tuple(f.q), tuple(f.v)
-
-
-def _scheme(f: Functions, acceleration: Sequence[Scalar] | None) -> InverseScheme:
-    """The inverse scheme with v̇ and λ as symbols."""
-    multipliers = list(zip(f.equations, f.symbols("lam"), strict=True))
-    return InverseScheme(
-        f.derivation,
-        f.tree,
-        f.dag,
-        f.values,
-        f.arms,
-        f.chords,
-        _state(f),
-        acceleration,
-        multipliers,
-    )
 
 
 def _after_dynamics(f: Functions, name: str, about: str, results: tuple[Result, ...]) -> Program:

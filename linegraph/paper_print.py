@@ -147,7 +147,7 @@ def equations(star: StarTree) -> PrintedMatrices:
         Z_1 = -H I H^T V                    printed as H P* x diag X Z_2, which (14) has already
         Z_2 = -H m H^T (H P* x diag X)^T V
 
-    w = (H P*)^T (X_c^r - 1 X_1^r) is of each chord's tail, W^t is `W_slide`. Two terms of B_3 are not in print.
+    w = (H P*)^T (X_c^r - 1 X_1^r) is of each tail, W^t is `W_slide`. Two terms of B_3 are not in print.
     """
     h = Operators(star)
     rest = zeros(len(star.chords) - 1)

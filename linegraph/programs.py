@@ -12,6 +12,7 @@ from linegraph.closure import Chords, equations
 from linegraph.errors import ModelError
 from linegraph.expression import Dag, Node
 from linegraph.factorization import Solution, solve
+from linegraph.inverse_scheme import InverseScheme
 from linegraph.loads import Applied, applied, efforts
 from linegraph.mass_matrix import mass_matrix
 from linegraph.parameters import valued
@@ -191,6 +192,21 @@ class Functions:
         """Whether constraints depend on inputs: on motions prescribed by some."""
         results = (Result("J", (), (*self.chords.position(), *self.chords.rates(self.v)), ""),)
         return reads("u", results)
+
+    @cached_property
+    def scheme(self) -> InverseScheme:
+        """Every variable of every edge, v̇ and λ as symbols; masses are the model's own."""
+        return InverseScheme(
+            self.derivation,
+            self.tree,
+            self.dag,
+            self.values,
+            self.arms,
+            self.chords,
+            (tuple(self.q), tuple(self.v)),
+            self.symbols("a"),
+            list(zip(self.equations, self.symbols("lam"), strict=True)),
+        )
 
     @cached_property
     def efforts(self) -> list[Scalar]:

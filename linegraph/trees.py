@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 MOST = 24
 """Candidates that are looked at."""
 
+MOST_NAMED = 5
+"""Of more chords than this only the number is told."""
+
 
 @dataclass(frozen=True)
 class Candidate:
@@ -130,7 +133,8 @@ def table(found: list[Candidate]) -> str:
     rows = [("operations", "velocities", "constraints", "cut", "")]
     for c in found:
         name = f"{c.name}{'   (this model)' * c.chosen}"
-        cut = ", ".join(c.cut) or "-"
+        cut = ", ".join(c.cut) if len(c.cut) <= MOST_NAMED else f"{len(c.cut)} joints"
+        cut = cut or "-"
         rows.append((str(c.operations), str(c.coordinates), str(c.constraints), cut, name))
     widths = [max(len(row[k]) for row in rows) for k in range(4)]
     lines = []

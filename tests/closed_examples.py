@@ -271,23 +271,8 @@ start = [0, 0, 0.2, 0, 0, 0, 1]
 [free.frame]
 between = ["ground", "rear"]
 """,
-    "car_axis": """
-[body.slide]
-
-[prismatic.place_x]
-between = ["ground", "slide"]
-axis = [1, 0, 0]
-effort = false
-start = 1
-
-[prismatic.place_y]
-between = ["slide", "right"]
-axis = [0, 1, 0]
-effort = false
-start = 0.5
-""",
 }
-"""What stands for a compound joint, which cannot close a loop and so has to be a branch of every tree."""
+"""What may stand for a compound joint, which is a branch of every tree, for absolute coordinates."""
 
 TREES: dict[str, tuple[str, ...]] = {
     "four_bar": ("motor", "elbow", "knee"),
@@ -298,26 +283,33 @@ TREES: dict[str, tuple[str, ...]] = {
         "platform/inertia",
         *(f"{joint}{k}" for joint in ("ball", "leg") for k in range(1, 7)),
     ),
-    "rolling_disc": (),
-    "bicycle": ("front/inertia", "steer", "rear_spin", "front_spin"),
-    "car_axis": ("right/inertia",),
+    "bicycle": ("front/inertia", "rear_spin", "front_spin"),
+    "car_axis": ("left/inertia",),
     "crane_hoist": ("rail", "load/inertia"),
     "parallelograms": ("A0", "B0", "C1", "B1", "C2"),
 }
-"""Another tree than the automatic one; `rolling_disc` has one joint alone."""
+"""Another tree than the automatic one, for all but the rolling disc, which has but one joint."""
 
-KINDS = ("absolute", "absolute-angle", "tree")
+KINDS = [
+    *((name, kind) for name in CLOSED for kind in ("absolute", "absolute-angle")),
+    *((name, "tree") for name in TREES),
+    *((name, "plain") for name in PLAIN),
+]
 
 
 def reformulated(name: str, kind: str) -> lg.Model:
-    """An example with other coordinates, or with the tree of `TREES`; automatic independent ones."""
-    text = (EXAMPLES / name / f"{name}.toml").read_text(encoding="utf-8")
-    blocks = text.split("\n\n")
-    if name in PLAIN:
-        blocks = [PLAIN[name] if b.startswith("[compound.") else b for b in blocks]
-    model = modelfile.parse("\n\n".join(blocks).encode(), f"{name}.toml")
-    chosen: dict[str, Any] = {"tree": TREES[name]} if kind == "tree" else {"coordinates": kind}
-    model.formulation(independent=None, **chosen)
+    """An example in other coordinates, of which the independent ones are chosen automatically."""
+    if kind == "plain":
+        text = (EXAMPLES / name / f"{name}.toml").read_text(encoding="utf-8")
+        blocks = [PLAIN[name] if b.startswith("[compound.") else b for b in text.split("\n\n")]
+        model = modelfile.parse("\n\n".join(blocks).encode(), f"{name}.toml")
+        kind = "absolute"
+    else:
+        model = read(name)
+    if kind == "tree":
+        model.formulation(independent=None, tree=TREES[name])
+    else:
+        model.formulation(independent=None, coordinates=kind)
     return model
 
 

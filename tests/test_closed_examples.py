@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import one_freedom
 import pytest
-from closed_examples import CLOSED, EXAMPLES, KINDS, State, System, read, robot, system, twin
+from closed_examples import BIG, CLOSED, EXAMPLES, KINDS, State, System, read, robot, system, twin
 from closed_examples import with_values as changed
 from compiled import COMPILERS, WARNINGS, Compiled, available
 from mpmath import mp
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     Array = np.ndarray
 
 G = 9.81
-EXACT = 1e-11
-"""Relative to 1 + the largest entry; measured 5e-13."""
+EXACT = 1e-12
+"""Relative to 1 + the largest entry; measured 1e-14."""
 
 FIRST = {1: 4 / 5, 2: -1 / 5, 3: 4 / 105, 4: -1 / 280}
 """Weights of central differences of eighth order."""
@@ -60,6 +60,14 @@ def relative(found: Any, expected: Any) -> float:
     size = np.abs(expected)
     size[size == 0] = size.max()
     return float(np.max(np.abs(found - expected) / size))
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_readme_says_what_it_is_and_how_it_is_used(name: str) -> None:
+    readme = (EXAMPLES / name / "README.md").read_text(encoding="utf-8")
+    path = f"examples/{name}/{name}.toml"
+    assert f"linegraph show {path}" in readme
+    assert f"linegraph emit {path} --out build/{name}" in readme
 
 
 # ---- Andrews' squeezing mechanism
@@ -223,7 +231,7 @@ WEAVE, CAPSIZE = 4.29238253634111, 6.02426201538837
 """
 
 STEP = 0.01
-"""Of differences: their error is 1e-13 with eighth order, more with larger steps and with smaller ones."""
+"""Of differences of eighth order: at twice the step the error grows from 1e-15 to 2e-11."""
 
 
 def riding(lean: float, steer: float, rates: Sequence[float], speed: float) -> Any:
@@ -255,7 +263,7 @@ def test_bicycle_mass_matrix_as_published() -> None:
 
 
 def test_bicycle_linear_equations_as_published() -> None:
-    """Measured 1e-13 of the largest entry."""
+    """Measured 1e-15 of the largest entry."""
     still = stiffness(0.0)
     assert error(still / G, BICYCLE_K0) < 1e-12
     for speed in (3.0, 5.0):
@@ -264,7 +272,7 @@ def test_bicycle_linear_equations_as_published() -> None:
 
 
 def test_bicycle_eigenvalues_and_speeds_as_published() -> None:
-    """Eigenvalues measured 1e-12, weave 4e-12, capsize 2e-11: a speed is sharper than its digits allow."""
+    """Measured 5e-15 for the eigenvalues, 3e-14 for the weave speed, 2e-13 for the capsize speed."""
     mass, gravity = riding(0, 0, (0, 0), 0.0)[0][:2, :2], stiffness(0.0)
     growth = (stiffness(5.0) - gravity) / 25
     gyroscopic = damping(5.0) / 5
@@ -280,9 +288,9 @@ def test_bicycle_eigenvalues_and_speeds_as_published() -> None:
         values = np.linalg.eigvals(np.vstack([np.eye(2, 4, 2), below]))
         return float(max(values[np.abs(values.imag) > 1e-3].real))
 
-    assert abs(brentq(weaving, 4, 5, xtol=1e-14) - WEAVE) < 1e-10
+    assert abs(brentq(weaving, 4, 5, xtol=1e-14) - WEAVE) < 1e-12
     capsize = brentq(lambda v: np.linalg.det(stiff(v)), 5.5, 6.5, xtol=1e-14)
-    assert abs(capsize - CAPSIZE) < 1e-10
+    assert abs(capsize - CAPSIZE) < 1e-12
 
 
 # ---- parallelograms
@@ -572,7 +580,7 @@ def test_stewart_platform_is_held_by_the_efforts_of_virtual_work() -> None:
     bend = (long.x**2 - 0.8**2) / long.x**3
     effort = G * (30 + 6 * 4 * 0.2 * bend + 6 * 1.5 * (1 - 0.25 * bend)) / (6 * 0.8 / long.x)
     a, _ = s.accelerate(s.start, np.zeros(s.py.NV), [effort] * 6)
-    assert np.max(np.abs(a)) < 1e-11
+    assert np.max(np.abs(a)) < 1e-12
 
 
 # ---- rolling disc
@@ -687,7 +695,7 @@ def test_crane_energy_comes_from_hoist_and_drive() -> None:
 
     tension = s.named("outputs", *state)["rope_force"]
     power = tension * 0.5 + 700 * state.v[0]
-    assert derivative(energy, 0.02) == pytest.approx(power, rel=1e-9)
+    assert derivative(energy, 0.005) == pytest.approx(power, rel=1e-10)
 
 
 # ---- energy
@@ -768,8 +776,7 @@ def test_powers_of_robots_sum_to_zero(name: str, base: str) -> None:
     audit(robot(name, base))
 
 
-@pytest.mark.parametrize("kind", ["absolute", "absolute-angle"])
-@pytest.mark.parametrize("name", CLOSED)
+@pytest.mark.parametrize(("name", "kind"), KINDS)
 def test_powers_sum_to_zero_in_other_coordinates(name: str, kind: str) -> None:
     audit(twin(name, kind))
 
@@ -778,12 +785,8 @@ def test_powers_sum_to_zero_in_other_coordinates(name: str, kind: str) -> None:
 
 
 def carried(name: str, state: State, target: System) -> State:
-    """A state of an example in the coordinates of another formulation.
-
-    Where the car axis has no compound joint it has a body more, and the same coordinates.
-    """
-    source = twin(name, "joint") if name == "car_axis" else system(name)
-    given, wanted = (x.derivation.numeric(t=state.t) for x in (source, target))
+    """A state of an example in the coordinates of another formulation."""
+    given, wanted = (x.derivation.numeric(t=state.t) for x in (system(name), target))
     q, v = transfer(given, state.q.tolist(), state.v.tolist(), wanted)
     return State(np.array(q), np.array(v), state.u, state.t)
 
@@ -807,8 +810,7 @@ def unique_reactions(s: System, state: State) -> set[str]:
     return {x for x, change in zip(s.py.REACTION_NAMES, doubt, strict=True) if change <= 1e-9}
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("name", CLOSED)
+@pytest.mark.parametrize(("name", "kind"), KINDS)
 def test_other_trees_give_the_same_motion(name: str, kind: str) -> None:
     """Energy, accelerations of all bodies, outputs, unique reactions, and which of them are unique."""
     s, other = system(name), twin(name, kind)
@@ -859,7 +861,7 @@ int main(void)
     const double start[FOUR_BAR_NQ] = {0.68, -0.06, 1.39};
     double q[N], v[N], u[FOUR_BAR_NU], s[I], w[I], q1[N], v1[N], a[N], lam[C], M[N * N], h[N];
     double J[C * N], gam[C], phi[FOUR_BAR_NP], T[N * I], c[N], Mr[I * I], hr[I], E[2], rates[C];
-    double R[FOUR_BAR_NR], X[FOUR_BAR_NX], y[FOUR_BAR_NY], P[FOUR_BAR_NE], sums[2], sum = 0.0;
+    double R[FOUR_BAR_NR] = {0}, X[FOUR_BAR_NX], y[FOUR_BAR_NY], P[FOUR_BAR_NE], sums[2], sum = 0.0;
     int closed = 0;
     for (int call = 0; call < CALLS; ++call) {
         double spread = call % 2 ? 0.3 : 3.0;
@@ -900,7 +902,7 @@ int main(void)
 def test_compiles_without_a_warning(name: str, compiler: str, tmp_path: Path) -> None:
     if not available(compiler):
         pytest.skip(f"{compiler} is not installed")
-    optimize = "-O0" if name == "stewart_platform" and compiler != "gcc" else "-O2"
+    optimize = "-O0" if name in BIG and compiler != "gcc" else "-O2"
     Compiled(render(read(name), languages=["c"]), name, tmp_path, compiler, flags=(optimize,))
 
 
@@ -910,7 +912,8 @@ def test_needs_nothing_but_the_mathematics_library(name: str, tmp_path: Path) ->
     for file, text in render(read(name), languages=["c"]).items():
         (tmp_path / file).write_text(text)
     warnings = [w for w in WARNINGS if w != "-Werror"]
-    command = ["gcc", "-std=c99", "-O1", "-Wvla", *warnings, "-c", f"{name}.c"]
+    optimize = "-O0" if name in BIG else "-O2"
+    command = ["gcc", "-std=c99", optimize, "-Wvla", *warnings, "-c", f"{name}.c"]
     subprocess.run(command, cwd=tmp_path, check=True)
     table = subprocess.run(
         ["nm", f"{name}.o"], cwd=tmp_path, check=True, capture_output=True, text=True
