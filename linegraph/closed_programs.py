@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from linegraph.errors import ModelError
+from linegraph.layout import has_plain_rates
 from linegraph.parameters import resolver
 from linegraph.program import Argument, Listing, Program, Quantity, Result, Routine
 
@@ -214,7 +215,7 @@ def _plain_pairs(f: Functions) -> dict[int, int]:
     return {
         v.index: q.index
         for link in f.tree.links
-        if len(link.place.positions) == len(link.velocities) and link.joint.kind != "planar"
+        if has_plain_rates(link.joint)
         for q, v in zip(link.place.positions, link.velocities, strict=True)
         if q.ratio == 1 and q.offset == 0
     }

@@ -88,23 +88,29 @@ class InverseScheme:
         self._multipliers = multipliers
         self._frames = frames(tree, algebra, crossed, acceleration)
         self._terminals = self._model.terminals()
+        self._known: dict[str, Frame] = {}
         self._acting = Acting(self._model, tree, algebra, parameters, chords, state)
 
     # -- where things are
 
     def terminal(self, name: str) -> Frame:
         """The motion of a terminal; of a mass centre too."""
+        if name not in self._known:
+            self._known[name] = self._found(name)
+        return self._known[name]
+
+    def center(self, body: str) -> Frame:
+        """The motion of a body's mass centre, in the body's axes."""
+        return self.terminal(f"{body}.{MASS_CENTER}")
+
+    def _found(self, name: str) -> Frame:
         body, _, last = name.rpartition(".")
         if last == MASS_CENTER and body in self._model.bodies:
-            return self.center(body)
+            return self._body(body).at(mass_center(self._model.bodies[body], self._resolve))
         body, placement = self._terminals[name]
         at = self._vector(placement.at)
         x, y, z = (self._vector(row) for row in placement.rotation)
         return self._body(body).at(at, (x, y, z))
-
-    def center(self, body: str) -> Frame:
-        """The motion of a body's mass centre, in the body's axes."""
-        return self._body(body).at(mass_center(self._model.bodies[body], self._resolve))
 
     def _body(self, body: str) -> Frame:
         link, pose = self._tree.bodies[body]

@@ -230,7 +230,7 @@ def _drive(
     """
     who = f'joint "{joint.name}"'
     q = joint.positions()
-    if not _has_plain_rates(joint):
+    if not has_plain_rates(joint):
         raise ModelError(
             who,
             "its motion cannot be prescribed: v is not the derivative of q; use a compound joint",
@@ -276,7 +276,7 @@ def _motion(
         raise ModelError(who, f"motion: {NOT_SMOOTH}") from None
 
 
-def _has_plain_rates(joint: Joint) -> bool:
+def has_plain_rates(joint: Joint) -> bool:
     """Whether v is the derivative of q, judged at a state like any other."""
     q, v = joint.positions(), joint.velocities()
     if len(q) != len(v):
