@@ -385,22 +385,48 @@ def test_a_weld_too_many_changes_nothing_but_its_reactions() -> None:
 
 
 def test_a_singular_position_is_a_status() -> None:
-    """Two equal bars folded onto each other between one point of ground: any direction is free."""
-    model = lg.Model("folded")
-    near = "ground"
-    for k in range(2):
-        body = model.body(f"bar{k}", mass=1, inertia=(1, 1, 1))
-        body.frame("end", at=(1.0, 0, 0))
-        model.revolute(f"j{k}", between=(near, body), axis=(0, 0, 1), start=(0.3, 2.0)[k])
-        near = f"bar{k}.end"
-    model.ground.frame("wall", at=(1.0, 0, 0))
-    slider = model.body("slider", mass=1)
-    model.prismatic("rail", between=("ground.wall", slider), axis=(0, 1, 0), start=0.9)
-    model.revolute("j2", between=(near, slider), axis=(0, 0, 1))
-    found = emitted(model)
+    """Parallelograms laid flat may fold either way: status 1 in C, outputs untouched, an error in Python."""
+    from closed_examples import system
+    from compiled import Failed
+
+    s = system("parallelograms")
+    flat = np.array([-math.pi / 2] * 3 + [math.pi / 2] * 2)
+    assert np.abs(s.call("constraints", flat, out=[(s.py.NP,)])).max() < 1e-15
+    with pytest.raises(Failed) as caught:
+        s.accelerate(flat, np.zeros(s.py.NV), [0.0])
+    assert caught.value.status == 1
+    with pytest.raises(np.linalg.LinAlgError, match="the position is singular"):
+        s.py.forward_dynamics(flat, np.zeros(s.py.NV), [0.0])
+    a, _ = s.accelerate(flat + 0.01 * np.array([1, 1, 1, -1, -1]), np.zeros(s.py.NV), [0.0])
+    assert a[0] == pytest.approx(-3.5 / 3 * 9.81 * math.cos(0.01), rel=1e-9)
+
+
+def test_what_is_not_a_number_is_a_status() -> None:
+    from closed_examples import system
+    from compiled import Failed
+
+    s = system("bricard")
+    nowhere = np.full(s.py.NQ, np.nan)
+    for function, out in (
+        ("forward_dynamics", [(s.py.NV,), (s.py.NC,)]),
+        ("project", [(s.py.NQ,), (s.py.NV,)]),
+    ):
+        arguments = (nowhere, np.zeros(s.py.NV), *([[]] if function == "forward_dynamics" else []))
+        with pytest.raises(Failed):
+            s.call(function, *arguments, out=out)
+
+
+def test_parameters_that_cannot_be_assembled_are_a_status() -> None:
+    """A four-bar whose fixed pivots are too far apart, at run time."""
+    from linegraph import modelfile
+
+    examples = Path(__file__).parent.parent / "examples"
+    found = emitted(modelfile.read(examples / "four_bar" / "four_bar.toml"))
+    far = found.DEFAULT_PARAMETERS.replace(d=3.5)
+    with pytest.raises(np.linalg.LinAlgError, match="no position"):
+        found.project(far, [0.8, 0.0, 1.2], np.zeros(3))
     with pytest.raises(np.linalg.LinAlgError):
-        found.project(np.full(found.NQ, np.nan), np.zeros(found.NV))
-    assert found.RANK == 2
+        found.complete(far, [0.8, 0.0, 1.2], [0.8], [1.0])
 
 
 def test_outputs_are_what_they_name() -> None:
