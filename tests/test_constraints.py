@@ -303,6 +303,76 @@ def test_a_ball_rolls_down_an_incline() -> None:
     assert lam[1] == pytest.approx(-2 / 7 * m * g * math.sin(slope), abs=1e-12)
 
 
+def test_a_torus_without_radius_is_a_ball() -> None:
+    """The crown alone: the same accelerations as those of a ball of that size."""
+
+    def rolling(**options: Any) -> Any:
+        model = lg.Model("torus", gravity=(1.5, 0.5, -9.81))
+        body = model.body("body", mass=2.0, inertia=(0.03, 0.04, 0.05))
+        model.free("pose", between=("ground", body), start=(0, 0, 0.2, 0, 0, 0, 1))
+        model.rolling("contact", between=("ground", body), **options)
+        return emitted(model)
+
+    ball, torus = rolling(radius=0.2), rolling(axis=(0, 1, 0), radius=0, crown=0.2)
+    rng = np.random.default_rng(12)
+    q, v = ball.project([0.1, 0.2, 0.2, *rng.normal(size=4)], rng.normal(size=6))
+    assert torus.constraints(q) == pytest.approx([0.0], abs=1e-14)
+    assert torus.constraint_rates(q, v) == pytest.approx(np.zeros(3), abs=1e-13)
+    a, b = ball.forward_dynamics(q, v, []), torus.forward_dynamics(q, v, [])
+    assert b[0] == pytest.approx(a[0], abs=1e-11)
+    assert b[1][0] == pytest.approx(a[1][0], abs=1e-11)
+
+
+def test_a_rounded_rim_touches_where_its_lowest_point_is() -> None:
+    """d/dt of touching is the velocity there along the normal, for a rim and a crown of any tilt."""
+    model = lg.Model("rim")
+    body = model.body("body", mass=2.0, inertia=(0.03, 0.04, 0.05))
+    model.free("pose", between=("ground", body), start=(0, 0, 0.3, 0, 0, 0, 1))
+    model.rolling("contact", between=("ground", body), axis=(0, 1, 0), radius=0.3, crown=0.05)
+    found, base = emitted(model), lg.derive(model).numeric()
+    rng = np.random.default_rng(13)
+    q = [0.0, 0.1, 0.3, *rng.normal(size=4)]
+    base.tree.normalise(q)
+    v = rng.normal(size=6)
+    rates = np.array(base.coordinate_rates(q, v.tolist()))
+    h = 1e-4
+
+    def touching(s: float) -> float:
+        there = (np.array(q) + s * rates).tolist()
+        base.tree.normalise(there)
+        return float(found.constraints(there)[0])
+
+    change = (touching(-2 * h) - 8 * touching(-h) + 8 * touching(h) - touching(2 * h)) / (12 * h)
+    assert change == pytest.approx(float((found.constraint_jacobian(q) @ v)[0]), abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["universal", "cylindrical", "planar"])
+def test_laws_may_name_the_coordinates_of_chords(kind: str) -> None:
+    """What is measured across a chord is what the branch has as its coordinates, and so are its rates."""
+
+    def at() -> lg.Model:
+        model = pair(kind, **KINDS[kind])
+        names = [quantity.name for quantity in model.joints[1].positions()]
+        law = " + ".join(f"{k + 1}*{name} + 0.3*der({name})" for k, name in enumerate(names))
+        model.law("law", ("ground", "b.p"), force=law)
+        return model
+
+    assert worst_difference(at, 6, coordinates="absolute") < 1e-10
+
+
+def test_multipliers_that_are_not_unique_have_least_norm() -> None:
+    """Bricard's linkage: no part of λ along the null space of J^T, in C and in Python."""
+    from closed_examples import system
+
+    s = system("bricard")
+    q, v = s.project(s.start + 0.05, np.full(s.py.NV, 0.3))
+    null = np.linalg.svd(s.py.constraint_jacobian(q))[0][:, s.py.RANK :]
+    assert null.shape == (5, 1)
+    for lam in (s.accelerate(q, v, [])[1], s.py.forward_dynamics(q, v, [])[1]):
+        assert np.abs(lam).max() > 1.0
+        assert np.abs(null.T @ np.ravel(lam)).max() < 1e-10
+
+
 def test_a_relation_is_a_gear() -> None:
     """``der(a) - 2 der(b)`` moves like a coupling by the ratio 2, with the same speeds."""
 
