@@ -298,16 +298,27 @@ class InverseScheme:
         return x, dot(pull, subtract(head.origin, tail.origin)) / x
 
     def across(self) -> dict[str, tuple[Vector, Vector]]:
-        """Velocity and angular velocity across all edges but rigid arms, in ground axes."""
+        """Velocity and angular velocity across every edge, in ground axes."""
         found: dict[str, tuple[Vector, Vector]] = {}
         for body in self._model.bodies:
             center = self.center(body)
             found[f"{body}/inertia"] = (center.linear, center.angular)
-        for name, (tail, head) in self._between.items():
+        for name, (tail, head) in (*self._between.items(), *self._rigid.items()):
             first, second = self.terminal(tail), self.terminal(head)
             linear = subtract(second.linear, first.linear)
-            found[name] = (linear, subtract(second.angular, first.angular))
+            # the ends of a rigid arm turn alike
+            turned = ZERO if name in self._rigid else subtract(second.angular, first.angular)
+            found[name] = (linear, turned)
         return found
+
+    @cached_property
+    def _rigid(self) -> dict[str, tuple[str, str]]:
+        """Mass centre and terminal of every rigid arm of a body."""
+        return {
+            f"{body}/arm{terminal.removeprefix(body)}": (f"{body}.{MASS_CENTER}", terminal)
+            for terminal, (body, _) in self._terminals.items()
+            if body in self._model.bodies
+        }
 
     @cached_property
     def _between(self) -> dict[str, tuple[str, str]]:
@@ -358,12 +369,9 @@ class InverseScheme:
             back = Wrench(negate(edge.through.force), add(negate(edge.through.torque), edge.lever))
             received[head] = received.get(head, NOTHING) + edge.through
             received[tail] = received.get(tail, NOTHING) + back
-        arms: dict[str, Edge] = {}
-        for terminal, (body, _) in self._terminals.items():
-            if body in self._model.bodies:
-                through = received.get(terminal, NOTHING).turned()
-                center = self.center(body)
-                arms[f"{body}/arm{terminal.removeprefix(body)}"] = self._edge(
-                    through, center, self.terminal(terminal)
-                )
-        return arms
+        return {
+            name: self._edge(
+                received.get(head, NOTHING).turned(), self.terminal(tail), self.terminal(head)
+            )
+            for name, (tail, head) in self._rigid.items()
+        }
