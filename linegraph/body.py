@@ -134,4 +134,4 @@ def _length(axis: Sequence[Any]) -> Any:
     """The length of a vector with symbolic components."""
     import sympy
 
-    return sympy.sqrt(sum(sympy.sympify(c) ** 2 for c in axis))
+    return sympy.sqrt(sum(sympy.sympify(c, strict=True) ** 2 for c in axis))

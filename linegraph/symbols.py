@@ -327,12 +327,12 @@ def to_sympy(node: Scalar, dag: Dag, names: Mapping[str, Iterable[str]]) -> Expr
             continue
         known[top.index] = _shown(top, known, algebra)
         pending.pop()
-    return known[node.index] if isinstance(node, Node) else sympy.sympify(node)
+    return known[node.index] if isinstance(node, Node) else sympy.sympify(node, strict=True)
 
 
 def _shown(node: Node, known: Mapping[int, Expr], algebra: Sympy) -> Expr:
     def operand(x: Any) -> Expr:
-        return known[x.index] if isinstance(x, Node) else sympy.sympify(x)
+        return known[x.index] if isinstance(x, Node) else sympy.sympify(x, strict=True)
 
     if node.op == "symbol":
         return algebra.symbol(node.a, node.b)
