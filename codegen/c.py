@@ -153,6 +153,7 @@ def _body(
         lines.append("    int status;")
     used = body.used.union(*(call.arguments for call in program.calls))
     lines += [f"    (void){x.name};" for x in program.arguments if x.name not in used]
+    lines += [f"    (void){x.name};" for x in program.results if not x.entries]
     for call, may_fail in zip(program.calls, fails, strict=True):
         lines += _call(module, call, may_fail)
     lines += body.lines

@@ -61,14 +61,14 @@ def head(module: Module) -> list[str]:
     for text in module.about:
         lines += [*prose.paragraph(text), ""]
     for listing in (*named(module), Listing("p", "", "parameters", module.parameters)):
-        if listing.quantities:
+        if listing.quantities and listing.shown:
             value = "value, " if listing.symbol == "p" else ""
             symbol = listing.sizes[0] if listing.sizes else listing.symbol
             meaning = "" if listing.groups else ", meaning"
             title = f"{symbol}, the {listing.heading}: index, name, {value}unit{meaning}"
-            rows = listing.groups or listing.quantities
-            step = len(listing.quantities) // len(rows)
-            lines += [*prose.paragraph(title), *prose.table(rows, step), ""]
+            rows = [quantity for quantity, _ in listing.groups] or listing.quantities
+            sizes = [size for _, size in listing.groups]
+            lines += [*prose.paragraph(title), *prose.table(rows, sizes), ""]
     return lines[:-1]
 
 

@@ -51,16 +51,17 @@ def paragraph(text: str, indent: int = 0) -> list[str]:
     return textwrap.wrap(plain(text), WIDTH, subsequent_indent=" " * indent, break_on_hyphens=False)
 
 
-def table(quantities: Sequence[Quantity], step: int = 1) -> list[str]:
-    """One row for each: index, counted in steps, name, value where there is one, unit and description."""
+def table(quantities: Sequence[Quantity], sizes: Sequence[int] = ()) -> list[str]:
+    """One row for each: index, counted in sizes, name, value where there is one, unit and description."""
+    places = [sum(sizes[:k]) if sizes else k for k in range(len(quantities))]
     rows = [
         [
-            str(step * index),
+            str(index),
             plain(x.name),
             "" if x.value is None else repr(float(x.value)),
             plain(x.unit),
         ]
-        for index, x in enumerate(quantities)
+        for index, x in zip(places, quantities, strict=True)
     ]
     widths = [min(max(map(len, column)), _NAME_WIDTH) for column in zip(*rows, strict=True)]
     lines: list[str] = []

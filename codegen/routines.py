@@ -24,11 +24,13 @@ HELPERS = {
     "reduction": ("eliminate", "determined"),
     "reduced_equations": (),
     "after_dynamics": (),
+    "rhs": (),
+    "newton": ("eliminate", "norm"),
 }
 """The algorithms, and what they share."""
 
 
-BATCHED = ("after_dynamics",)
+BATCHED = ("after_dynamics", "rhs")
 """Algorithms that only call others, so that they take many states at once where those do."""
 
 
@@ -69,6 +71,7 @@ def body(
         macro=module.name.upper(),
         call=_calling(module, routine, prefix),
         texts={status: quote(about) for status, about in routine.statuses},
+        fails={name for name, found in layout.statuses(module).items() if found},
         **dict(routine.details),
     )
     lines = text.rstrip("\n").split("\n")

@@ -17,7 +17,7 @@ from linegraph.orthogonality import Arm, bias_accelerations, bias_force, caption
 from linegraph.vector import Matrix, Scalar, Vector, add, cross, dot, subtract
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from linegraph.algebra import Algebra
     from linegraph.joints import Moments
@@ -80,10 +80,18 @@ def rigid(moments: Moments) -> Articulated:
 
 
 def forward_dynamics(
-    tree: KinematicTree, algebra: Algebra, crossed: Sequence[Arm], efforts: Sequence[Scalar]
+    tree: KinematicTree,
+    algebra: Algebra,
+    crossed: Sequence[Arm],
+    efforts: Sequence[Scalar],
+    armatures: Mapping[int, Scalar] | None = None,
 ) -> Solution:
-    """v̇ for the generalised forces `efforts` along v; joints must not be coupled."""
+    """v̇ for the generalised forces `efforts` along v; joints must not be coupled.
+
+    `armatures` are what moves with a velocity alone, as a rotor behind its gear does: they add to its pivot.
+    """
     size = len(tree.velocities)
+    beside = armatures or {}
     pivots: list[Scalar] = [0] * size
     inverse: list[Scalar] = [0] * size
     net: list[Scalar] = [0] * size
@@ -103,7 +111,7 @@ def forward_dynamics(
             s, u = arm.motion.angular[a], arm.motion.linear[a]
             k = freedom.index
             n, f = body.apply(s, u)
-            pivots[k] = dot(s, n) + dot(u, f)
+            pivots[k] = dot(s, n) + dot(u, f) + beside.get(k, 0)
             inverse[k] = 1 / pivots[k]
             net[k] = (efforts[k] - (dot(s, torque) + dot(u, force))) * inverse[k]
             body = body.without(n, f, inverse[k])

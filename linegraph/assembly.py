@@ -139,7 +139,7 @@ class _Judgement:
             raise self._no_inertia(massless[0] or [])
         position_rank = self._rank_of(J[: sum(e.holonomic for e in self.equations)])
         place = [float(x) for x in q]
-        counts = (best, position_rank, rows - best, columns - best)
+        counts = (best, position_rank, rows - best, self.tree.layout.mechanical - best)
         return Assembly(place, *counts, unique, independent)
 
     def _independent(self, J: Array, rank: int) -> list[int]:
@@ -147,7 +147,7 @@ class _Judgement:
         np = self.np
         scale = np.abs(J).max(initial=1e-300)
         dependent: list[int] = []
-        for k in reversed(range(J.shape[1])):
+        for k in reversed(range(self.tree.layout.mechanical)):
             if len(dependent) == rank:
                 break
             columns = J[:, [*dependent, k]] / scale
@@ -155,7 +155,7 @@ class _Judgement:
                 dependent.append(k)
         if len(dependent) < rank:
             return []
-        return sorted(set(range(J.shape[1])) - set(dependent))
+        return sorted(set(range(self.tree.layout.mechanical)) - set(dependent))
 
     def _require_consistent(self, q: list[float], J: Array, left: Array) -> None:
         """Refuse prescribed motions that contradict each other."""
@@ -183,8 +183,8 @@ class _Judgement:
     def _massless(self, q: list[float], rank: int) -> list[str] | None:
         """The velocities of a motion that the constraints allow and nothing with mass takes part in."""
         np = self.np
-        J = self.search.jacobian(q)
-        M = np.array(self.numeric.mass_matrix(q), float)
+        J = self.search.jacobian(q)[:, : self.tree.layout.mechanical]
+        M = np.array(self.numeric.mechanical_mass_matrix(q), float)
         allowed = np.linalg.svd(J)[2][rank:].T if len(J) else np.eye(len(M))
         if not allowed.shape[1]:
             return None

@@ -3,7 +3,8 @@
 Three routes to M and h meet at random states: the program that is emitted, run as it is; the same derivation
 over floats; and the paper's matrices multiplied out. And the power balance: along the motion, the rate of
 kinetic and gravitational energy, differentiated exactly, is the power of all that is applied. And the audit:
-through times across, summed over all edges of each subspace, is zero. With constraints the states satisfy
+through times across, summed over all edges of each subspace, is zero, and every component of a network
+stores or turns into heat what it takes in. With constraints the states satisfy
 them, and their Jacobian and bias are compared, too.
 """
 
@@ -17,16 +18,16 @@ from linegraph import orthogonality
 from linegraph.algebra import Floats
 from linegraph.assembly import consistent, saddle
 from linegraph.closure import equations
-from linegraph.edges import powers
+from linegraph.edges import network_powers, powers
 from linegraph.factorization import solve
 from linegraph.interpretation import run
 from linegraph.inverse_scheme import InverseScheme
 from linegraph.jets import Jet, Jets
 from linegraph.loads import applied, efforts
-from linegraph.mass_matrix import mass_matrix
 from linegraph.paper import paper_matrices
 from linegraph.program import Program
 from linegraph.programs import module_of
+from linegraph.united import network_entries
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -130,7 +131,7 @@ class _State:
     def reference(self) -> tuple[list[Vector], Vector]:
         """M and h by the derivation over floats."""
         crossed = orthogonality.arms(self.tree, self.algebra, self.q, self.v)
-        M = mass_matrix(self.tree, self.algebra, crossed)
+        M = self.numeric.united_mass_matrix(self.q, self.v)
         passive = self._applied(crossed, driven=False)
         return M, orthogonality.inverse_dynamics(self.tree, self.algebra, crossed, applied=passive)
 
@@ -143,7 +144,10 @@ class _State:
     def run(self, module: Module, name: str) -> list[Vector]:
         """The results of one of the programs that would be emitted."""
         program = next(p for p in module.programs if isinstance(p, Program) and p.name == name)
-        return run(program, {"q": self.q, "v": self.v, **self.algebra.arguments})
+        exchange = self.numeric.exchange(self.q, self.v)
+        loop = exchange.solved if exchange is not None and exchange.network.loop else []
+        given = {"q": self.q, "v": self.v, "loop": loop, **self.algebra.arguments}
+        return run(program, given)
 
     def constraint_difference(self, module: Module) -> float:
         """J and γ of the emitted program and of the float reference."""
@@ -158,7 +162,8 @@ class _State:
         """v̇ and λ."""
         right = [force - bias for force, bias in zip(self.forces(), h, strict=True)]
         if not self.tree.closed:
-            return solve(M, right, self.tree.outward).unknowns, []
+            symmetric = self.tree.network is None or self.tree.network.symmetric
+            return solve(M, right, self.tree.outward, symmetric=symmetric).unknowns, []
         J = self.numeric.constraint_jacobian(self.q)
         return saddle(M, right, J, self.numeric.constraint_bias(self.q, self.v))
 
@@ -185,7 +190,9 @@ class _State:
             list(zip(equations(self.tree), multipliers, strict=True)),
         )
         found, sums = powers(scheme.edges())
-        return float(max(map(abs, sums)) / (1 + max(map(abs, found.values()))))
+        more, domains = network_powers(self.tree.network, scheme.network())
+        found, sums = found | more, (*sums, *domains.values(), *scheme.gains().values())
+        return float(max(map(abs, sums)) / (1 + max(map(abs, found.values()), default=0.0)))
 
     def printed(self) -> tuple[list[Vector], Vector]:
         """M and h by the paper's matrices; what elements add is projected by the float reference."""
@@ -194,7 +201,11 @@ class _State:
         loads = orthogonality.generalised_forces(
             self.tree, self.algebra, crossed, self._applied(crossed, driven=False)
         )
-        return matrices.A, [-b - load for b, load in zip(matrices.B, loads, strict=True)]
+        rows = [list(row) for row in matrices.A]
+        entries = network_entries(self.numeric.exchange(self.q, self.v), self.algebra)
+        for i, j, entry in entries:
+            rows[i][j] += entry
+        return rows, [-b - load for b, load in zip(matrices.B, loads, strict=True)]
 
     def power_defect(self, acceleration: Vector) -> float:
         """dE/dt less the power of everything applied, relative to the power."""
@@ -202,8 +213,13 @@ class _State:
         passive = orthogonality.generalised_forces(
             self.tree, self.algebra, crossed, self._applied(crossed, driven=False)
         )
-        both = zip(self.v, self.forces(), passive, strict=True)
+        first = self.tree.layout.mechanical
+        both = list(zip(self.v, self.forces(), passive, strict=True))[:first]
         power = sum(v * (active + own) for v, active, own in both)
+        entries = network_entries(self.numeric.exchange(self.q, self.v), self.algebra)
+        for i, j, entry in entries:
+            # what a rotor behind a gear takes is no power applied to the bodies
+            power -= self.v[i] * entry * acceleration[j] if i < first else 0.0
         return float(abs(self._energy_rate(acceleration) - power) / (1 + abs(power)))
 
     def _energy_rate(self, acceleration: Sequence[float]) -> float:
@@ -238,8 +254,10 @@ def report(derivation: Derivation, findings: Findings, heading: Callable[[str], 
     """The findings for a reader."""
     tree = derivation.structure
     lines = [heading(f"model {derivation.model.name}")]
-    freedoms = derivation.assembled.freedoms if tree.closed else len(tree.velocities)
-    lines.append(f"  {freedoms} degrees of freedom, {len(tree.inputs)} inputs")
+    freedoms = derivation.assembled.freedoms if tree.closed else tree.layout.mechanical
+    states = len(tree.velocities) - tree.layout.mechanical
+    beside = f", {states} states of networks" * bool(states)
+    lines.append(f"  {freedoms} degrees of freedom{beside}, {len(tree.inputs)} inputs")
     listed = (("q", tree.positions), ("v", tree.velocities), ("u", tree.inputs))
     for symbol, quantities in listed:
         lines += [f"  {symbol}[{i}]  {x.name}  {x.unit}" for i, x in enumerate(quantities)]

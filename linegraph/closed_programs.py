@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from linegraph.assembly import Assembly
-    from linegraph.programs import Functions
+    from linegraph.shared import Functions
     from linegraph.vector import Scalar
 
 SINGULAR = (1, "the position is singular: more motions are free here than elsewhere")
@@ -73,6 +73,12 @@ def _whole(f: Functions) -> Program:
 
 def forward_dynamics(f: Functions) -> tuple[Program | Routine, ...]:
     """v̇ and λ, by elimination of J with complete pivoting: redundant constraints drop out."""
+    if not f.symmetric:
+        problem = (
+            "its controlled sources make the mass matrix unsymmetric, which cannot be solved together "
+            "with closed loops yet"
+        )
+        raise ModelError(f'model "{f.model.name}"', problem)
     results = (
         Result("a", (len(f.v),), (), "accelerations, the derivatives of v"),
         Result(
@@ -128,8 +134,8 @@ def project(f: Functions) -> tuple[Program | Routine, ...]:
 def reduction(f: Functions) -> tuple[Program | Routine, ...]:
     """The mechanism in its independent coordinates alone."""
     chosen = independent(f) if f.tree.closed else None
-    if not chosen:
-        return ()
+    if not chosen or f.tree.network is not None:
+        return ()  # states of networks are no coordinates to reduce to
     n, k = len(f.v), len(chosen)
     guess = "q, a guess of all coordinates near the position wanted, "
     complete = _routine(
@@ -235,10 +241,13 @@ def listings(f: Functions) -> tuple[Listing, ...]:
         )
         for e, one in zip(f.equations, unique, strict=True)
     )
-    chosen = tuple(f.tree.velocities[v] for _, v in independent(f))
     heading = "constraints, those of position first, and of their multipliers"
+    constraints_ = Listing("constraint", "NC", heading, multipliers, ("lam", "gam", "rates"))
+    if f.tree.network is not None:
+        return (constraints_,)
+    chosen = tuple(f.tree.velocities[v] for _, v in independent(f))
     return (
-        Listing("constraint", "NC", heading, multipliers, ("lam", "gam", "rates")),
+        constraints_,
         Listing("independent", "NI", "independent velocities", chosen, ("w",)),
     )
 
@@ -259,6 +268,8 @@ def remarks(f: Functions) -> tuple[str, ...]:
         "M vdot + h = Q + J^T lam with J vdot = gam; "
         f"{found.rank} are independent: {freedoms_text(found.freedoms)}."
     )
+    if f.tree.network is not None:
+        text += " With networks beside them they are not reduced to independent coordinates."
     if found.redundant:
         names = [
             e.multiplier.name for e, one in zip(f.equations, found.unique, strict=True) if not one

@@ -29,11 +29,18 @@ from linegraph.parameters import Parameter, resolver, valued
 from linegraph.regularity import require_regular
 from linegraph.scope import relations, require_linear
 from linegraph.transfer import transfer
+from linegraph.united import (
+    exchange_at,
+    network_entries,
+    united_inverse_dynamics,
+    united_mass_matrix,
+)
 from linegraph.walk import kinematic_tree
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from linegraph.exchange import Exchange
     from linegraph.graph import SystemGraph
     from linegraph.kinematics import KinematicTree
     from linegraph.model import Model
@@ -201,9 +208,26 @@ class Numeric:
 
     def mass_matrix(self, q: Sequence[float]) -> list[list[float]]:
         """M(q)."""
-        return mass_matrix(
-            self.tree, self.algebra, self._arms(q, [0.0] * len(self.tree.velocities))
-        )
+        return self.united_mass_matrix(q, [0.0] * len(self.tree.velocities))
+
+    def mechanical_mass_matrix(self, q: Sequence[float]) -> list[list[float]]:
+        """Its part of mechanics, without what networks add."""
+        at_rest = [0.0] * len(self.tree.velocities)
+        rows = mass_matrix(self.tree, self.algebra, self._arms(q, at_rest))
+        return [row[: self.tree.layout.mechanical] for row in rows[: self.tree.layout.mechanical]]
+
+    def united_mass_matrix(self, q: Sequence[float], v: Sequence[float]) -> list[list[float]]:
+        """𝓜(q, v): the mass matrix where what networks store depends on their states."""
+        entries = network_entries(self.exchange(q, v), self.algebra)
+        return united_mass_matrix(self.tree, self.algebra, self._arms(q, v), entries)
+
+    def exchange(self, q: Sequence[float], v: Sequence[float]) -> Exchange | None:
+        """The networks at a state."""
+        if self.model is None or self.tree.network is None:
+            return None
+        chords = Chords(self.tree, self.algebra, self._arms(q, v), self.parameters)
+        state = (tuple(q), tuple(v))
+        return exchange_at(self.model, self.tree, self.algebra, self.parameters, chords, state)
 
     def bias(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
         """h(q, v)."""
@@ -215,7 +239,8 @@ class Numeric:
         """M a + h."""
         crossed = self._arms(q, v)
         acting = self.applied(q, v, driven=False)
-        return orthogonality.inverse_dynamics(self.tree, self.algebra, crossed, a, acting)
+        entries = network_entries(self.exchange(q, v), self.algebra) if a is not None else ()
+        return united_inverse_dynamics(self.tree, self.algebra, crossed, entries, a, acting)
 
     def coordinate_rates(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
         """N(q) v."""

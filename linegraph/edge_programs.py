@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from linegraph.edges import (
     across_groups,
     across_quantities,
+    network_powers,
+    network_quantities,
     powers,
     reaction_axes,
     reaction_groups,
@@ -14,12 +16,12 @@ from linegraph.edges import (
 )
 from linegraph.layout import EFFORT_UNITS
 from linegraph.observation import observed
-from linegraph.program import Argument, Call, Listing, Program, Quantity, Result, Routine
+from linegraph.program import Argument, Call, Listing, Program, Quantity, Result, Routine, reads
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from linegraph.programs import Functions
+    from linegraph.shared import Functions
     from linegraph.vector import Scalar
 
 
@@ -31,27 +33,39 @@ def across(f: Functions) -> tuple[Program | Routine, ...]:
         for part in (linear, angular)
         for x in part
     )
+    entries += tuple(x for x, _ in f.scheme.network().values())
     about = (
-        "Across variables: velocity and angular velocity of the head of every edge less its tail's."
+        "Across variables: velocity and angular velocity of the head of every edge less its tail's"
+        f"{', then those of networks, tail over head' * (f.exchange is not None)}."
     )
     result = Result("X", (len(entries),), entries, "across variables, in ground axes")
+    if reads("a", (result,)):
+        return (_after_dynamics(f, "across", about, (result,)),)
     return (f.program("across", about, ("q", "v"), (result,)),)
+
+
+_THROUGH = (
+    " Then what flows through every edge of networks; what they exert on joints and points is in power, and in "
+    "outputs where these ask for it."
+)
 
 
 def reactions(f: Functions) -> tuple[Program | Routine, ...]:
     """What every joint and constraint exerts: from given accelerations, and from inputs."""
     names = _joints(f)
-    if not names:
-        return ()
     entries: list[Scalar] = []
     for name in names:
         force, torque = f.scheme.reaction(name)
         entries += [*force, *torque]
+    entries += [y for _, y in f.scheme.network().values()]
+    if not entries:
+        return ()
     result = Result("R", (len(entries),), tuple(entries), "reactions")
     given = ("q", "v", "a", "lam") if f.tree.closed else ("q", "v", "a")
     about = (
         "Reactions: the force and the torque, about the origin of its head frame, that every joint exerts on "
         f"its head, efforts included, for given accelerations{' and multipliers' * f.tree.closed}."
+        f"{_THROUGH * (f.exchange is not None)}"
     )
     at = f.program("reactions_at", about, given, (result,))
     arguments = ("q", "v", "u")
@@ -82,9 +96,13 @@ def drives(f: Functions) -> tuple[Program | Routine, ...]:
 def power(f: Functions) -> tuple[Program | Routine, ...]:
     """Through times across of every edge, and its sums."""
     found, sums = powers(f.scheme.edges())
+    more, domains = network_powers(f.tree.network, f.scheme.network())
+    found |= more
+    sums = (*sums, *domains.values())
+    meaning = ", ".join(["translation", "rotation with levers", *domains])
     results = (
         Result("P", (len(found),), tuple(found.values()), "power that each edge delivers (W)"),
-        Result("sums", (2,), sums, "sum over translation, and over rotation with levers: zero (W)"),
+        Result("sums", (len(sums),), sums, f"sums over {meaning}: zero (W)"),
     )
     about = (
         "Power audit: through times across of every edge, and the sums that the principle of orthogonality "
@@ -99,6 +117,7 @@ def outputs(f: Functions) -> tuple[Program | Routine, ...]:
         return ()
     entries, dynamic = observed(f.model, f.tree, f.dag, f.values, f.chords, _state(f), f.scheme)
     result = Result("y", (len(entries),), tuple(entries), "outputs")
+    dynamic = dynamic or reads("a", (result,))
     about = "Outputs: the quantities that the model asks for by name."
     if dynamic:
         return (_after_dynamics(f, "outputs", about, (result,)),)
@@ -113,13 +132,18 @@ def listings(f: Functions, chosen: Sequence[str]) -> tuple[Listing, ...]:
         heading = (
             "across variables: of each edge velocity and angular velocity x, y, z, in ground axes"
         )
-        quantities = across_quantities(names)
-        found.append(Listing("across", "NX", heading, quantities, ("X",), across_groups(names)))
-    if "reactions" in chosen and _joints(f):
-        quantities = reaction_quantities(f.model, _joints(f))
-        groups = reaction_groups(_joints(f))
+        more = network_quantities(f.model, f.tree.network, 0)
+        quantities = (*across_quantities(names), *more)
+        groups = (*across_groups(names), *((quantity, 1) for quantity in more))
+        heading += "; of edges of networks one" * bool(more)
+        found.append(Listing("across", "NX", heading, quantities, ("X",), groups))
+    more = network_quantities(f.model, f.tree.network, 1)
+    if "reactions" in chosen and (_joints(f) or more):
+        quantities = (*reaction_quantities(f.model, _joints(f)), *more)
+        groups = (*reaction_groups(_joints(f)), *((quantity, 1) for quantity in more))
         axes = reaction_axes(f.model)
         heading = f"reactions: of each joint force and torque x, y, z on its head, in {axes} axes"
+        heading += "; of edges of networks what flows through" * bool(more)
         found.append(Listing("reaction", "NR", heading, quantities, ("R",), groups))
     driven = f.scheme.drives() if "drives" in chosen else {}
     if driven:
@@ -130,6 +154,7 @@ def listings(f: Functions, chosen: Sequence[str]) -> tuple[Listing, ...]:
         found.append(Listing("drive", "ND", "driving forces", quantities, ("D",)))
     if "power" in chosen:
         names = list(powers(f.scheme.edges())[0])
+        names += list(network_powers(f.tree.network, f.scheme.network())[0])
         quantities = tuple(Quantity(name, "W", f"power of {name}") for name in names)
         found.append(Listing("power", "NE", "powers", quantities, ("P",)))
     if "outputs" in chosen and f.model.outputs:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.choices import GROUND_AXES, HEAD
+from linegraph.domains import DOMAINS
 from linegraph.program import Quantity
 from linegraph.vector import ZERO, Scalar, Vector, add, cross, dot, negate, subtract
 
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from linegraph.model import Model
+    from linegraph.network import Network
 
 XYZ = "xyz"
 
@@ -68,14 +70,43 @@ def powers(edges: Mapping[str, Edge]) -> tuple[dict[str, Scalar], tuple[Scalar, 
     return found, (translation, rotation)
 
 
-def across_groups(names: Sequence[str]) -> tuple[Quantity, ...]:
-    """The same, one for each edge: what the head of a file lists."""
-    return tuple(Quantity(name, "m/s, rad/s") for name in names)
+def network_powers(
+    network: Network | None, found: Mapping[str, tuple[Scalar, Scalar]]
+) -> tuple[dict[str, Scalar], dict[str, Scalar]]:
+    """The power that each edge of a network delivers, and its sum in each subspace that has a power: zero."""
+    powers_: dict[str, Scalar] = {}
+    sums: dict[str, Scalar] = {}
+    for branch in network.branches if network is not None else ():
+        domain = branch.port.domain
+        if branch.port.spatial or domain in (network.heats if network else ()):
+            continue
+        x, y = found[branch.name]
+        powers_[branch.name] = -(x * y)
+        sums[domain] = sums.get(domain, 0) + powers_[branch.name]
+    return powers_, sums
 
 
-def reaction_groups(names: Sequence[str]) -> tuple[Quantity, ...]:
-    """The reactions, one for each joint."""
-    return tuple(Quantity(name, "N, N*m") for name in names)
+def network_quantities(model: Model, network: Network | None, place: int) -> list[Quantity]:
+    """What the across (0) or the through (1) variables of a network's edges are called."""
+    found = []
+    for branch in network.branches if network is not None else ():
+        if branch.port.spatial:
+            continue
+        domain = model.domains.get(branch.port.domain) or DOMAINS[branch.port.domain]
+        variable = (domain.across, domain.through)[place]
+        what = f"{variable.name} {('across', 'through')[place]} {branch.name}"
+        found.append(Quantity(branch.name, variable.symbol, what))
+    return found
+
+
+def across_groups(names: Sequence[str]) -> tuple[tuple[Quantity, int], ...]:
+    """The same, one for each edge, and how many they are: what the head of a file lists."""
+    return tuple((Quantity(name, "m/s, rad/s"), 6) for name in names)
+
+
+def reaction_groups(names: Sequence[str]) -> tuple[tuple[Quantity, int], ...]:
+    """The reactions, one for each joint, and how many they are."""
+    return tuple((Quantity(name, "N, N*m"), 6) for name in names)
 
 
 def reaction_axes(model: Model) -> str:

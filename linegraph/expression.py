@@ -151,6 +151,8 @@ class Dag:
             return self.subtract(x, y.a)
         if x.op == NEG:
             return self.subtract(y, x.a)
+        if x is y:
+            return self._scale(2, x)
         return self._node(ADD, x, y) if x.index <= y.index else self._node(ADD, y, x)
 
     def subtract(self, x: Operand, y: Operand) -> Operand:

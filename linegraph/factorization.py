@@ -27,15 +27,22 @@ class Solution(NamedTuple):
 
 
 def solve(
-    rows: Sequence[Sequence[Scalar]], right: Sequence[Scalar], outward: Sequence[int]
+    rows: Sequence[Sequence[Scalar]],
+    right: Sequence[Scalar],
+    outward: Sequence[int],
+    *,
+    symmetric: bool = True,
 ) -> Solution:
     """Solve ``M x = r``.
 
     Args:
-        rows: M, of which one triangle is read.
+        rows: M, of which one triangle is read if it is symmetric.
         right: r.
         outward: the coordinates in an order from the root to the leaves.
+        symmetric: whether M is; otherwise it is factored by ``M = U D L`` with the same pivots.
     """
+    if not symmetric:
+        return _general(rows, right, outward)
     size = len(right)
     m = [list(row) for row in rows]
     x = list(right)
@@ -57,4 +64,31 @@ def solve(
     for k in outward:
         for i, entry in factor[k].items():
             x[k] = x[k] - entry * x[i]
+    return Solution(x, pivots)
+
+
+def _general(
+    rows: Sequence[Sequence[Scalar]], right: Sequence[Scalar], outward: Sequence[int]
+) -> Solution:
+    """The same for a matrix that is not symmetric."""
+    m = [list(row) for row in rows]
+    x = list(right)
+    pivots: list[Scalar] = [0] * len(x)
+    for place in reversed(range(len(x))):
+        k = outward[place]
+        pivots[k] = m[k][k]
+        inverse = 1 / pivots[k]
+        for i in outward[:place]:
+            if m[i][k] == 0:
+                continue
+            factor = m[i][k] * inverse
+            for j in outward[:place]:
+                if m[k][j] != 0:
+                    m[i][j] = m[i][j] - factor * m[k][j]
+            x[i] = x[i] - factor * x[k]
+    for place, k in enumerate(outward):
+        for j in outward[:place]:
+            if m[k][j] != 0:
+                x[k] = x[k] - m[k][j] * x[j]
+        x[k] = x[k] / pivots[k]
     return Solution(x, pivots)

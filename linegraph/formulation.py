@@ -28,15 +28,19 @@ from linegraph.choices import ABSOLUTE, ABSOLUTE_ANGLE, AUTOMATIC
 from linegraph.domains import ROTATION, TRANSLATION
 from linegraph.elements import Element
 from linegraph.errors import ModelError
+from linegraph.graph import Projection
 from linegraph.joints import Compound
+from linegraph.network import network_of
+from linegraph.network.edges import edges_of
 from linegraph.planarity import Angle, absolute_angles
 from linegraph.topology import Topology, choose_forest
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from linegraph.graph import Edge, Projection, SystemGraph
+    from linegraph.graph import Edge, SystemGraph
     from linegraph.model import Model
+    from linegraph.network import Network
 
 INERTIA_WEIGHT = 7.0
 NOTHING_ACTS = 0.3
@@ -54,6 +58,7 @@ class Formulation:
         level: joints that are branches in translation only, with the body beyond, whose inertia edge is the
             branch in rotation: its orientation is measured from ground.
         chords: joints that are chords in both.
+        network: the scalar networks, with trees of their own.
     """
 
     translation: Topology
@@ -62,6 +67,7 @@ class Formulation:
     absolute: tuple[str, ...]
     level: Mapping[str, Angle]
     chords: tuple[str, ...]
+    network: Network | None = None
 
 
 def formulate(model: Model, graph: SystemGraph) -> Formulation:
@@ -70,11 +76,13 @@ def formulate(model: Model, graph: SystemGraph) -> Formulation:
     Raises:
         ModelError: nothing holds a body, the wanted tree is none, or a joint that cannot be cut is.
     """
-    if not model.bodies:
-        raise ModelError(f'model "{model.name}"', "has no bodies: there is nothing to derive")
+    if not model.bodies and not model.components:
+        problem = "has no bodies and no components: there is nothing to derive"
+        raise ModelError(f'model "{model.name}"', problem)
     _require_known(model)
+    network = network_of(model)
     absolute = _absolute(model)
-    projection = graph[TRANSLATION.name]
+    projection = _mechanics(graph, TRANSLATION.name)
     # rigid arms hold bodies together: they are branches before all else
     arms = [edge.name for edge in projection.edges if _is_arm(model, edge)]
     wanted = [*arms, *_wanted(model, absolute)]
@@ -86,10 +94,15 @@ def formulate(model: Model, graph: SystemGraph) -> Formulation:
     names = {joint.name for joint in model.joints}
     branches = frozenset(edge.name for edge in translation.branches if edge.name in names)
     level = _level(model, translation)
-    rotation = _rotation(graph[ROTATION.name], translation, level)
+    rotation = _rotation(_mechanics(graph, ROTATION.name), translation, level)
     chords = tuple(edge.name for edge in translation.chords if edge.name in names)
     _require_followers(model, branches)
-    return Formulation(translation, rotation, branches, absolute, level, chords)
+    return Formulation(translation, rotation, branches, absolute, level, chords, network)
+
+
+def _mechanics(graph: SystemGraph, domain: str) -> Projection:
+    """The graph of a mechanical subspace; ground alone where there is nothing else."""
+    return graph[domain] if domain in graph.domains else Projection(domain, (GROUND,), ())
 
 
 def _explained(error: ModelError, model: Model) -> ModelError:
@@ -138,7 +151,9 @@ def _coupled(model: Model) -> list[str]:
 def _wanted(model: Model, absolute: tuple[str, ...]) -> list[str]:
     """Edges that must be branches: as the user says, and those that cannot be chords."""
     inertia = (f"{name}/inertia" for name in absolute)
-    wanted = [*inertia, *model.choices.tree, *_coupled(model)]
+    components = {branch.name for branch in edges_of(model.components)}
+    chosen = (name for name in model.choices.tree if name not in components)
+    wanted = [*inertia, *chosen, *_coupled(model)]
     return list(dict.fromkeys(wanted))
 
 
@@ -205,6 +220,7 @@ def _rotation(
 def _require_known(model: Model) -> None:
     """Refuse a wish for edges, bodies or kinds that do not exist."""
     edges = [joint.name for joint in model.joints] + [f"{name}/inertia" for name in model.bodies]
+    edges += [branch.name for branch in edges_of(model.components) if not branch.port.spatial]
     for name in model.choices.tree:
         if name not in edges:
             raise ModelError(

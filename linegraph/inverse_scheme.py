@@ -89,7 +89,9 @@ class InverseScheme:
         self._frames = frames(tree, algebra, crossed, acceleration)
         self._terminals = self._model.terminals()
         self._known: dict[str, Frame] = {}
-        self._acting = Acting(self._model, tree, algebra, parameters, chords, state)
+        self._acting = Acting(
+            self._model, tree, algebra, parameters, chords, state, acceleration=acceleration
+        )
 
     # -- where things are
 
@@ -349,8 +351,27 @@ class InverseScheme:
                 found[quantity.name] = dot(s, torque) + dot(u, force)
         return found
 
+    def network(self) -> dict[str, tuple[Scalar, Scalar]]:
+        """Across and through variable of every edge in scalar subspaces."""
+        exchange = self._acting.exchange
+        if exchange is None:
+            return {}
+        set_label(self._algebra, "network, every edge")
+        names = [b.name for b in exchange.network.branches if not b.port.spatial]
+        return {name: (exchange.across(name), exchange.through(name)) for name in names}
+
+    def gains(self) -> dict[str, Scalar]:
+        """The energy balance of each component of networks, which is zero."""
+        exchange = self._acting.exchange
+        return {} if exchange is None else exchange.gains()
+
+    def variables(self) -> Mapping[str, Scalar]:
+        """``across(R1)`` and ``through(R1)`` of networks, as outputs name them."""
+        exchange = self._acting.exchange
+        return {} if exchange is None else exchange.variables()
+
     def edges(self) -> dict[str, Edge]:
-        """All edges of the system graph, by name, in both subspaces at once."""
+        """All edges of the system graph, by name, in both mechanical subspaces at once."""
         found: dict[str, Edge] = {}
         for body in self._model.bodies:
             found[f"{body}/inertia"] = self.inertia(body)

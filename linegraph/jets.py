@@ -161,3 +161,9 @@ _DERIVATIVES: dict[str, Callable[[Algebra, Scalar, Scalar], tuple[Scalar, Scalar
     "sqrt": _sqrt,
 }
 """First and second derivative of each smooth function, given its argument x and its value y."""
+
+
+def derivatives(name: str, base: Algebra, x: Scalar, y: Scalar) -> tuple[Scalar, Scalar] | None:
+    """First and second derivative of a smooth function at x, where it is y; None of any other."""
+    found = _DERIVATIVES.get(name)
+    return found(base, x, y) if found else None

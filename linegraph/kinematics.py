@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from linegraph.constraints.relation import Relation
     from linegraph.jets import Jet
     from linegraph.layout import Freedom, Layout, Place
+    from linegraph.network import Network
     from linegraph.program import Quantity
 
 Resolve = Callable[[Any], Scalar]
@@ -107,6 +108,7 @@ class KinematicTree:
         closures: what the tree leaves out.
         relations: constraints without edges, linear in velocities.
         ends: of every joint and constraint, branch or chord, where it is.
+        network: the scalar networks.
     """
 
     links: tuple[Link, ...]
@@ -116,6 +118,7 @@ class KinematicTree:
     closures: tuple[Closure, ...] = ()
     relations: tuple[Relation, ...] = ()
     ends: Mapping[str, Closure] = field(default_factory=dict)
+    network: Network | None = None
 
     @property
     def closed(self) -> bool:
@@ -153,10 +156,11 @@ class KinematicTree:
 
     @property
     def outward(self) -> list[int]:
-        """Independent velocities from the root to the leaves."""
+        """Independent velocities from the root to the leaves, then the states of networks."""
         order: dict[int, None] = {}
         for link in self.links:
             order.update((freedom.index, None) for freedom in link.velocities)
+        order.update((k, None) for k in range(self.layout.mechanical, len(self.velocities)))
         return list(order)
 
     def normalise(self, q: list[float]) -> None:

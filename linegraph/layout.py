@@ -77,6 +77,8 @@ class Layout:
         pushes: the first input of each joint whose effort does not: chords, and joints measured from ground.
         places: by joint, and by body for those on their inertia edge.
         drives: prescribed motions by joint or constraint, also of chords.
+        input_rates: named inputs and those of their derivatives that a network needs: u, du and ddu.
+        mechanical: how many of the velocities are of mechanics; states of networks follow.
     """
 
     positions: list[Quantity] = field(default_factory=list)
@@ -87,6 +89,8 @@ class Layout:
     places: dict[str, Place] = field(default_factory=dict)
     drives: dict[str, tuple[Jet | None, ...]] = field(default_factory=dict)
     named_inputs: dict[str, Scalar] = field(default_factory=dict)
+    input_rates: dict[tuple[str, str], Scalar] = field(default_factory=dict)
+    mechanical: int = 0
 
     def own(self, joint: str) -> Place | None:
         """Where a joint finds its own coordinates; None where the state has none of them."""
@@ -109,8 +113,12 @@ def layout_of(
             _add_effort(layout, joint, _add_coordinates(layout, joint, formulation))
     for body in formulation.absolute:
         layout.places[body] = _placed(layout, floating(body))
+    layout.mechanical = len(layout.velocities)
+    if formulation.network is not None:
+        layout.velocities += [state.quantity for state in formulation.network.states]
     for declared in model.inputs:
         layout.named_inputs[declared.name] = _input(layout, algebra, _quantity(declared))
+        _add_rates(layout, algebra, declared, formulation)
     for quantities in (layout.positions, layout.velocities):
         _require_unique(quantities)
     values = _time(model, algebra, parameters)
@@ -126,6 +134,17 @@ def layout_of(
     for name, angle in formulation.level.items():
         _measure_from_ground(layout, name, angle)
     return layout
+
+
+def _add_rates(layout: Layout, algebra: Algebra, declared: Input, formulation: Formulation) -> None:
+    """New inputs for the derivatives of a named one, as far as a network needs them."""
+    name, unit = declared.name, declared.unit or "1"
+    layout.input_rates[("u", name)] = layout.named_inputs[name]
+    order = formulation.network.rates.get(name, 0) if formulation.network else 0
+    rate = Quantity(f"{name}_rate", f"{unit}/s", f"first derivative of {name}")
+    second = Quantity(f"{name}_acceleration", f"{unit}/s^2", f"second derivative of {name}")
+    for kind, quantity in (("du", rate), ("ddu", second))[:order]:
+        layout.input_rates[(kind, name)] = _input(layout, algebra, quantity)
 
 
 def floating(body: str) -> Free:

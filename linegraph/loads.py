@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from linegraph import vector
 from linegraph.closure import Chords
+from linegraph.components.forces import NetworkForce, forces_of
 from linegraph.elements import Element, Load
 from linegraph.elements.load import BODY
 from linegraph.errors import ModelError
-from linegraph.frames import Frame, seated
+from linegraph.exchange import ALL, DRIVEN, RESTING, Exchange, Motion
+from linegraph.frames import Frame, Pair, seated
 from linegraph.joints import Joint
 from linegraph.kinematics import Seat
 from linegraph.orthogonality import set_label
@@ -66,11 +69,15 @@ def applied(
     Raises:
         ModelError: a law names something that does not exist.
     """
-    found = [e for e in model.elements if depends_on_inputs(model, e.values()) == driven]
-    if not found:
+    found: list[Element | Load] = [
+        e for e in model.force_elements if depends_on_inputs(model, e.values()) == driven
+    ]
+    if not found and tree.network is None:
         return Applied([(ZERO, ZERO)] * len(tree.links), [0] * len(tree.velocities))
+    found += forces_of(model.components)
     chords = Chords(tree, algebra, crossed, parameters)
-    return Acting(model, tree, algebra, parameters, chords, (q, v)).of(found)
+    what = DRIVEN if driven else RESTING
+    return Acting(model, tree, algebra, parameters, chords, (q, v), what).of(found)
 
 
 def efforts(
@@ -107,13 +114,25 @@ class Acting:
         parameters: Mapping[str, Scalar],
         chords: Chords,
         state: State,
+        what: str = ALL,
+        acceleration: Sequence[Scalar] | None = None,
     ) -> None:
-        """Nothing acts yet."""
+        """Nothing acts yet; `what` of networks is asked for, and at which v̇."""
         self._tree = tree
         self._algebra = algebra
         self._state = state
         self._chords = chords
-        self._values = scope(model, tree, algebra, parameters, state, self._chords)
+        self._what = what
+        names = scope(model, tree, algebra, parameters, state, self._chords)
+        self._forces = {e.name: e for e in model.elements if isinstance(e, Element)}
+        self.exchange = None
+        self._values: Mapping[str, Scalar] = names
+        if tree.network is not None:
+            known = ChainMap(_Taken(self), names)
+            self.exchange = Exchange(
+                tree.network, tree, algebra, parameters, state[1], known, self.motion, acceleration
+            )
+            self._values = ChainMap(names, self.exchange.variables())
         self._terminals = model.terminals()
         self._wrenches: list[tuple[Vector, Vector]] = [(ZERO, ZERO)] * len(tree.links)
         self._efforts: list[Scalar] = [0] * len(tree.velocities)
@@ -126,7 +145,14 @@ class Acting:
             try:
                 self._take(element)
             except ModelError as error:
+                if isinstance(element, NetworkForce) and error.thing:
+                    raise  # it names the component
                 raise ModelError(f'{element.kind} "{element.name}"', error.problem) from None
+        if self.exchange is not None:
+            for k, state in enumerate(self.exchange.network.states):
+                set_label(self._algebra, f"network, {state.quantity.name}")
+                place = self.exchange.first + k
+                self._efforts[place] = self._efforts[place] + self.exchange.force(k, self._what)
         return Applied(self._wrenches, self._efforts, self._potential)
 
     def _take(self, element: Element | Load) -> None:
@@ -138,23 +164,75 @@ class Acting:
             self._between(element)
 
     def _resolve(self, value: Any, **names: Scalar) -> Scalar:
-        return resolver(self._algebra, {**self._values, **names} if names else self._values)(value)
+        values: Any = self._values
+        values = ChainMap(names, values) if names else values
+        return resolver(self._algebra, values)(value)
+
+    def _y(self, element: Element, x: Scalar, v: Scalar) -> Scalar:
+        """An element's through variable; of an edge of a network as the network says."""
+        if not isinstance(element, NetworkForce) or self.exchange is None:
+            return element.through(self._algebra, x, v, self._resolve)
+        if self.exchange.acceleration is not None:
+            return self.exchange.through(element.name)
+        ports = [port.name for port in self.exchange.network.ports]
+        row = len(self.exchange.network.states) + ports.index(element.name)
+        return -self.exchange.force(row, self._what)
+
+    def motion(self, port: str) -> Motion:
+        """How the edge of a network in mechanics moves."""
+        element = self._forces[port]
+        if element.joint is None:
+            return self._stretching(element)
+        x, v = self._motion(element.joint)
+        place = self._tree.layout.own(element.joint)
+        if place is None:
+            pair = self._chords.effort(self._closure(element.joint), [1])
+            row = [(freedom.index, entry) for freedom, entry in self._chords.along(pair)]
+            return Motion(x, v, tuple(row), None)
+        freedoms = (*place.velocities, *place.less[1])
+        bias = place.drive[0].ddx if place.drive else 0
+        return Motion(x, v, tuple((f.index, f.ratio) for f in freedoms), bias)
+
+    def _stretching(self, element: Element) -> Motion:
+        """The same of an edge between two points: the distance, and its acceleration at v̇ = 0."""
+        assert element.between is not None
+        (near, a), (far, b) = (self.terminal(end) for end in element.between)
+        x, direction, v = self._line(a, b)
+        pair = Pair(direction, ZERO, b.origin, far, near)
+        row = [(f.index, entry) for f, entry in self._chords.along(pair)]
+        apart = subtract(b.linear, a.linear)
+        turning = (dot(apart, apart) - v * v) / x
+        return Motion(x, v, tuple(row), dot(direction, subtract(b.pull, a.pull)) + turning)
+
+    def _line(self, a: Frame, b: Frame) -> tuple[Scalar, Vector, Scalar]:
+        """The distance of two points, the direction from one to the other, and the rate."""
+        line = subtract(b.origin, a.origin)
+        x = self._algebra.sqrt(dot(line, line))
+        direction = vector.scale(1 / x, line)
+        return x, direction, dot(direction, subtract(b.linear, a.linear))
+
+    def taken(self, name: str) -> Scalar:
+        """The power that a force element takes in."""
+        element = self._forces[name]
+        if element.joint is not None:
+            x, v = self._motion(element.joint)
+        else:
+            assert element.between is not None
+            (_, a), (_, b) = (self.terminal(end) for end in element.between)
+            x, _, v = self._line(a, b)
+        return self._y(element, x, v) * v
 
     def in_joint(self, element: Element) -> tuple[Scalar, Scalar]:
         """An element's coordinate, which is its joint's, and its through variable."""
         x, v = self._motion(str(element.joint))
-        return x, element.through(self._algebra, x, v, self._resolve)
+        return x, self._y(element, x, v)
 
     def between(self, element: Element) -> tuple[Scalar, Vector]:
         """An element's length, and the pull on its tail in ground axes."""
         assert element.between is not None
         (_, a), (_, b) = (self.terminal(end) for end in element.between)
-        line = subtract(b.origin, a.origin)
-        x = self._algebra.sqrt(dot(line, line))
-        direction = vector.scale(1 / x, line)
-        v = dot(direction, subtract(b.linear, a.linear))
-        y = element.through(self._algebra, x, v, self._resolve)
-        return x, vector.scale(y, direction)
+        x, direction, v = self._line(a, b)
+        return x, vector.scale(self._y(element, x, v), direction)
 
     def load(self, load: Load) -> tuple[Vector, Vector]:
         """A load's force and torque in ground axes."""
@@ -222,6 +300,22 @@ class Acting:
 
     def _store(self, element: Element, x: Scalar) -> None:
         self._potential = self._potential + element.potential(self._algebra, x, self._resolve)
+
+
+class _Taken(dict[str, Any]):
+    """``taken(bearing)``: the power that a force element takes in, evaluated as it is looked up."""
+
+    def __init__(self, acting: Acting) -> None:
+        super().__init__()
+        self._acting = acting
+
+    def __contains__(self, name: object) -> bool:
+        return str(name).startswith("taken(")
+
+    def __getitem__(self, name: str) -> Scalar:
+        if name not in self:
+            raise KeyError(name)
+        return self._acting.taken(name[len("taken(") : -1])
 
 
 def _resolved(a: Vector, resolve: Any) -> Vector:

@@ -9,6 +9,8 @@ from linegraph.assemblies import add_basement, add_rotor, followers_at, locked
 from linegraph.body import GROUND, MASS_CENTER, Body, Placement, inertia_of, unit
 from linegraph.checks import finite, plain, vector
 from linegraph.choices import Choices, chosen
+from linegraph.components import Words
+from linegraph.components.forces import forces_of
 from linegraph.constraints import Blade, Constraint, Driver, Rod, Rolling, aligned
 from linegraph.constraints.relation import Relation
 from linegraph.coupling import Coupling
@@ -28,7 +30,6 @@ from linegraph.joints import (
     Spherical,
     Universal,
 )
-from linegraph.joints.base import BY_INPUT
 from linegraph.outputs import Output
 from linegraph.parameters import Input, Parameter, is_number, names_in
 from linegraph.terminals import system_graph, terminals_of
@@ -46,7 +47,7 @@ SNAP = 1e-11
 Acting = TypeVar("Acting", Element, Load)
 
 
-class Model:
+class Model(Words):
     """A system of components, connected at terminals.
 
     Args:
@@ -88,6 +89,8 @@ class Model:
         self.places: dict[str, int] = {}
         self._joints: dict[str, Joint] = {}
         self._couplings: dict[str, Coupling] = {}
+        self._components = {}
+        self.domains = {}
 
     spring = applies(Spring)
     damper = applies(Damper)
@@ -168,9 +171,14 @@ class Model:
         return tuple(self._inputs.values())
 
     @property
-    def elements(self) -> tuple[Element | Load, ...]:
+    def force_elements(self) -> tuple[Element | Load, ...]:
         """The force elements and loads in declared order."""
         return tuple(self._elements.values())
+
+    @property
+    def elements(self) -> tuple[Element | Load, ...]:
+        """The same, and what the networks' edges in mechanics exert."""
+        return (*self._elements.values(), *forces_of(self.components))
 
     @property
     def constraints(self) -> tuple[Constraint, ...]:
@@ -185,8 +193,8 @@ class Model:
     @property
     def depends_on_time(self) -> bool:
         """Whether a prescribed motion or a law names the time t."""
-        values = [value for joint in self.joints for value in _values(joint.drive)]
-        acting = (*self._elements.values(), *self._constraints.values())
+        values = [value for joint in self.joints for value in joint.prescribed_values()]
+        acting = (*self._elements.values(), *self._constraints.values(), *self.components)
         values += [output.value for output in self.outputs]
         values += [value for component in acting for value in component.values()]
         return any("t" in names_in(value) for value in values)
@@ -277,15 +285,16 @@ class Model:
             ModelError: the name is taken, or the element has no place or two.
         """
         who = f'{element.kind} "{element.name}"'
-        if any(
-            element.name in taken for taken in (self._elements, self._joints, self._constraints)
-        ):
+        if self._taken(element.name) or element.name in self._components:
             raise ModelError(who, "the name is taken; names of joints and elements are unique")
         if isinstance(element, Element) and (element.between is None) == (element.joint is None):
             raise ModelError(who, "give either between=(tail, head) or joint=...")
         finite(element.values(), who)
         self._elements[element.name] = element
         return element
+
+    def _taken(self, name: str) -> bool:
+        return any(name in known for known in (self._elements, self._joints, self._constraints))
 
     def relation(self, name: str, rate: Any) -> Relation:
         """Constrain velocities by an expression that is zero and linear in rates; see `Relation`."""
@@ -298,7 +307,7 @@ class Model:
             ModelError: the name is taken.
         """
         who = f'{limit.kind} "{limit.name}"'
-        if any(limit.name in taken for taken in (self._joints, self._elements, self._constraints)):
+        if self._taken(limit.name) or limit.name in self._components:
             raise ModelError(who, "the name is taken; joints, elements and constraints share names")
         finite(limit.values(), who)
         found: Limit = aligned(limit, who)
@@ -378,11 +387,7 @@ class Model:
             self.lock(follower, at)
 
     def terminals(self) -> dict[str, tuple[str, Placement]]:
-        """Every terminal a joint may be connected to: its body and its placement there.
-
-        Raises:
-            ModelError: two terminals have the same name.
-        """
+        """Every terminal a joint may be connected to: its body and its placement there."""
         return terminals_of(self)
 
     def graph(self) -> SystemGraph:
@@ -392,9 +397,3 @@ class Model:
             ModelError: a component names a terminal that does not exist, or connects a body to itself.
         """
         return system_graph(self)
-
-
-def _values(drive: Any) -> tuple[Any, ...]:
-    """The values of a prescribed motion."""
-    given = tuple(drive) if isinstance(drive, (tuple, list)) else (drive,)
-    return () if given in ((None,), (BY_INPUT,)) else given

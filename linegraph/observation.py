@@ -81,11 +81,15 @@ def _edge_variable(model: Model, scheme: InverseScheme, kind: str, thing: str, p
                 "", f"{kind}({thing}): there is no such terminal; {nearest(thing, known)}"
             )
         return getattr(scheme.terminal(thing), OF_POINTS[kind])["xyz".index(part)]
+    if f"{kind}({thing})" in scheme.variables():
+        return scheme.variables()[f"{kind}({thing})"]
     if kind in ("across", "through"):
         elements = {e.name: e for e in model.elements if isinstance(e, Element)}
+        known_edges = [*elements, *scheme.network()]
         if thing not in elements:
             raise ModelError(
-                "", f"{kind}({thing}): there is no such element; {nearest(thing, elements)}"
+                "",
+                f"{kind}({thing}): there is no such element; {nearest(thing, known_edges)}",
             )
         x, y = scheme.tension(elements[thing])
         return x if kind == "across" else y

@@ -103,7 +103,7 @@ def resolver(algebra: Algebra, values: Mapping[str, Scalar]) -> Callable[[Any], 
                 raise ModelError(f'parameter "{x.name}"', "does not belong to this model")
             return values[x.name]
         if hasattr(x, "free_symbols"):
-            from linegraph.symbols import evaluate
+            from linegraph.sympy_walk import evaluate
 
             return evaluate(x, algebra, values)
         return x

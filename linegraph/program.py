@@ -125,7 +125,8 @@ class Listing:
         count: the name of their number; empty for those without count and array.
         heading: what they are, in the plural.
         sizes: the results that have so many entries.
-        groups: in the head of a file, one row each for so many quantities as there are for one of these.
+        groups: in the head of a file, one row each; a group's name and how many quantities it has.
+        shown: whether the head of a file lists them.
     """
 
     symbol: str
@@ -133,7 +134,8 @@ class Listing:
     heading: str
     quantities: tuple[Quantity, ...]
     sizes: tuple[str, ...] = ()
-    groups: tuple[Quantity, ...] = ()
+    groups: tuple[tuple[Quantity, int], ...] = ()
+    shown: bool = True
 
 
 @dataclass(frozen=True)

@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
 from typing import TYPE_CHECKING
 
-from linegraph import closed_programs, edge_programs, orthogonality
+from linegraph import closed_programs, edge_programs, network_programs, orthogonality
 from linegraph.articulated import forward_dynamics
-from linegraph.closure import Chords, equations
 from linegraph.errors import ModelError
-from linegraph.expression import Dag, Node
+from linegraph.expression import Node
 from linegraph.factorization import Solution, solve
-from linegraph.inverse_scheme import InverseScheme
-from linegraph.loads import Applied, applied, efforts
-from linegraph.mass_matrix import mass_matrix
-from linegraph.parameters import valued
 from linegraph.program import (
     Argument,
     Call,
@@ -25,11 +19,12 @@ from linegraph.program import (
     Quantity,
     Result,
     Routine,
-    assemble,
-    reads,
 )
 from linegraph.regularity import SINGULAR, is_solid
-from linegraph.scope import relations
+from linegraph.shared import ARGUMENTS, Functions
+from linegraph.united import (
+    united_inverse_dynamics,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -68,6 +63,7 @@ def module_of(
     functions.dag.release()
     tree = functions.tree
     closed = closed_programs.listings(functions) if tree.closed else ()
+    whole = (network_programs.state_listing(tree),) if "rhs" in chosen else ()
     return Module(
         name=name,
         about=(*about, *closed_programs.remarks(functions)),
@@ -77,161 +73,9 @@ def module_of(
         parameters=() if folded else parameters,
         time=derivation.model.depends_on_time,
         programs=programs,
-        listings=(*closed, *edge_programs.listings(functions, chosen)),
+        listings=(*whole, *closed, *edge_programs.listings(functions, chosen)),
         counts=closed_programs.counts(functions) if tree.closed else (),
     )
-
-
-class Functions:
-    """What several functions share: the DAG, the tree over it, M and h."""
-
-    def __init__(self, derivation: Derivation, folded: bool) -> None:
-        """Nothing is derived before a function asks for it."""
-        self.dag = Dag()
-        self.derivation = derivation
-        self.model = derivation.model
-        self.head = ["p"] if not folded else []
-        self.head += ["t"] if derivation.model.depends_on_time else []
-        self.values = valued(
-            derivation.model.parameters.values(),
-            self.dag,
-            lambda p: p.value if folded else self.dag.symbol("p", p.name),
-        )
-        self.tree = derivation.tree(self.dag, self.values)
-        self.short = self.tree.regrouped()
-        self.equations = equations(self.tree)
-        self.sizes = {
-            "q": len(self.tree.positions),
-            "v": len(self.tree.velocities),
-            "a": len(self.tree.velocities),
-            "u": len(self.tree.inputs),
-            "lam": len(self.equations),
-        }
-        self.texts = ARGUMENTS
-        self.q = self.symbols("q")
-        self.v = self.symbols("v")
-
-    def symbols(self, name: str) -> list[Scalar]:
-        """The entries of an argument."""
-        return [self.dag.symbol(name, i) for i in range(self.sizes[name])]
-
-    def program(
-        self,
-        name: str,
-        about: str,
-        arguments: tuple[str, ...],
-        results: tuple[Result, ...],
-        checks: tuple[Check, ...] = (),
-        calls: tuple[Call, ...] = (),
-        *,
-        status: bool = False,
-    ) -> Program:
-        """Assemble a function; the arguments follow the contract's order ``p, t, q, v, u, a``.
-
-        Parameters and time are there exactly when the model has them, inputs when the results need them.
-        """
-        if "u" not in arguments and reads("u", results):
-            place = sum(argument in ("q", "v") for argument in arguments)
-            arguments = (*arguments[:place], "u", *arguments[place:])
-        given = tuple(
-            Argument(argument, self.sizes.get(argument), ARGUMENTS[argument])
-            for argument in (*self.head, *arguments)
-        )
-        return assemble(name, about, given, results, checks, calls, status=status)
-
-    @cached_property
-    def passive(self) -> Applied:
-        """Springs, dampers and loads that no input drives: part of the bias."""
-        return self._applied(driven=False)
-
-    @cached_property
-    def active(self) -> Applied:
-        """Elements and loads that inputs drive: part of Q."""
-        return self._applied(driven=True)
-
-    def _applied(self, *, driven: bool) -> Applied:
-        state = (tuple(self.q), tuple(self.v))
-        return applied(
-            self.model, self.short, self.dag, self.values, self.arms, *state, driven=driven
-        )
-
-    @cached_property
-    def arms(self) -> list[orthogonality.Arm]:
-        """The joints' motions at (q, v)."""
-        return orthogonality.arms(self.short, self.dag, self.q, self.v)
-
-    @cached_property
-    def mass_matrix(self) -> Result:
-        """M as a result."""
-        rows = mass_matrix(self.short, self.dag, self.arms)
-        entries = tuple(entry for row in rows for entry in row)
-        return Result("M", (len(rows), len(rows)), entries, "mass matrix, both triangles")
-
-    @cached_property
-    def pattern(self) -> list[list[bool]]:
-        """Where M has entries that are not zero everywhere."""
-        size = len(self.v)
-        used = [entry != 0 for entry in self.mass_matrix.entries]
-        return [used[i * size : (i + 1) * size] for i in range(size)]
-
-    @cached_property
-    def chords(self) -> Chords:
-        """The constraints at (q, v)."""
-        rates = orthogonality.coordinate_rates(self.tree, self.dag, self.q, self.v)
-        state = (tuple(self.q), tuple(self.v))
-        found = relations(self.model, self.tree, self.dag, self.values, state, rates)
-        return Chords(self.tree, self.dag, self.arms, self.values, found)
-
-    @cached_property
-    def jacobian(self) -> list[list[Scalar]]:
-        """J."""
-        return self.chords.jacobian()
-
-    @cached_property
-    def driven_constraints(self) -> bool:
-        """Whether constraints depend on inputs: on motions prescribed by some."""
-        results = (Result("J", (), (*self.chords.position(), *self.chords.rates(self.v)), ""),)
-        return reads("u", results)
-
-    @cached_property
-    def scheme(self) -> InverseScheme:
-        """Every variable of every edge, v̇ and λ as symbols; masses are the model's own."""
-        return InverseScheme(
-            self.derivation,
-            self.tree,
-            self.dag,
-            self.values,
-            self.arms,
-            self.chords,
-            (tuple(self.q), tuple(self.v)),
-            self.symbols("a"),
-            list(zip(self.equations, self.symbols("lam"), strict=True)),
-        )
-
-    @cached_property
-    def efforts(self) -> list[Scalar]:
-        """Q: joint efforts at their velocities, and what driven elements do."""
-        active = orthogonality.generalised_forces(self.short, self.dag, self.arms, self.active)
-        return efforts(self.short, self.dag, self.chords, active)
-
-    @cached_property
-    def bias(self) -> Result:
-        """The bias h as a result."""
-        entries = orthogonality.inverse_dynamics(
-            self.short, self.dag, self.arms, applied=self.passive
-        )
-        return Result("h", (len(entries),), tuple(entries), "bias vector")
-
-
-ARGUMENTS = {
-    "p": "parameters",
-    "t": "time (s)",
-    "q": "coordinates",
-    "v": "velocities",
-    "a": "accelerations, the derivatives of v",
-    "u": "inputs",
-    "lam": "multipliers of the constraints",
-}
 
 
 def _mass_matrix(f: Functions) -> Program:
@@ -250,7 +94,7 @@ def _equations(f: Functions) -> Program:
 
 def _inverse_dynamics(f: Functions) -> Program:
     a = f.symbols("a")
-    tau = orthogonality.inverse_dynamics(f.short, f.dag, f.arms, a, f.passive)
+    tau = united_inverse_dynamics(f.short, f.dag, f.arms, f.entries, a, f.passive)
     result = Result("tau", (len(tau),), tuple(tau), "generalised forces along v")
     about = "Inverse dynamics tau = M(q) a + h(q, v), without forming M."
     return f.program("inverse_dynamics", about, ("q", "v", "a"), (result,))
@@ -262,21 +106,34 @@ def _forward_dynamics(f: Functions) -> Program:
     With solid bodies M cannot become singular, so articulated inertias need no scale to judge pivots by;
     where some link is not solid, the factors do the judging.
     """
-    if (
-        f.tree.coupled
-        or f.tree.levelled
-        or not all(is_solid(link) for link in f.tree.links if link.numeric)
-    ):
+    solid = all(is_solid(link) for link in f.tree.links if link.numeric)
+    if f.armatures is None or f.tree.coupled or f.tree.levelled or not solid:
         return _factored(f)
     articulated = _articulated(f)
-    return articulated if articulated.operations < _factored_cost(f) else _factored(f)
+    if not f.tree.links or articulated.operations < _factored_cost(f):
+        return articulated
+    return _factored(f)
 
 
 def _articulated(f: Functions) -> Program:
+    """Links by articulated inertias, networks beside them by their own part of the mass matrix."""
     passive = orthogonality.generalised_forces(f.short, f.dag, f.arms, f.passive)
     total = [effort + load for effort, load in zip(f.efforts, passive, strict=True)]
-    solution = forward_dynamics(f.short, f.dag, f.arms, total)
-    return _solved(f, solution, [0] * len(solution.pivots), ())
+    solution = forward_dynamics(f.short, f.dag, f.arms, total, f.armatures or {})
+    first, size = f.tree.layout.mechanical, len(f.v) - f.tree.layout.mechanical
+    rows: list[list[Scalar]] = [[0] * size for _ in range(size)]
+    for i, j, entry in f.entries:
+        if i >= first:
+            rows[i - first][j - first] = rows[i - first][j - first] + entry
+    f.dag.label = "network, rates of its states"
+    beside = solve(rows, total[first:], range(size), symmetric=f.symmetric)
+    whole = Solution(
+        [*solution.unknowns[:first], *beside.unknowns],
+        [*solution.pivots[:first], *beside.pivots],
+    )
+    bounds: list[Scalar] = [0] * first
+    bounds += [SINGULAR * rows[k][k] if f.symmetric else 0 for k in range(size)]
+    return _solved(f, whole, bounds, ())
 
 
 def _factored(f: Functions) -> Program:
@@ -289,10 +146,10 @@ def _factored(f: Functions) -> Program:
         [f.dag.symbol("M", i * size + j) if used else 0 for j, used in enumerate(row)]
         for i, row in enumerate(f.pattern)
     ]
-    solution = solve(rows, right, f.tree.outward)
+    solution = solve(rows, right, f.tree.outward, symmetric=f.symmetric)
     local = (Argument("M", size * size, "mass matrix"), Argument("h", size, "bias vector"))
     names = tuple(argument.name for argument in _equations(f).arguments)
-    bounds = [SINGULAR * rows[i][i] for i in range(size)]
+    bounds = [SINGULAR * rows[i][i] if f.symmetric else 0 for i in range(size)]
     return _solved(f, solution, bounds, (Call("equations", names, local),))
 
 
@@ -309,16 +166,23 @@ def _factored_cost(f: Functions) -> int:
 def _solved(
     f: Functions, solution: Solution, bounds: list[Scalar], calls: tuple[Call, ...]
 ) -> Program:
-    checks = tuple(
+    first = f.tree.layout.mechanical
+    checks = [
         Check(pivot, bound, i + 1, f"the mass matrix is singular at {f.tree.velocities[i].name}")
         for i, (pivot, bound) in enumerate(zip(solution.pivots, bounds, strict=True))
-        if isinstance(pivot, Node)
-    )
+        if isinstance(pivot, Node) and (i < first or f.symmetric)
+    ]
+    checks += [
+        Check(size, 0, i + 1, f"the mass matrix is singular at {f.tree.velocities[i].name}")
+        for i, pivot in enumerate(solution.pivots)
+        if i >= first and not f.symmetric
+        if isinstance(size := f.dag.function("abs", pivot), Node)
+    ]
     accelerations = tuple(solution.unknowns)
     result = Result("a", (len(accelerations),), accelerations, ARGUMENTS["a"])
     about = "Forward dynamics a = M(q)^-1 (Q(u) - h(q, v))."
     given = ("q", "v", "u")
-    return f.program("forward_dynamics", about, given, (result,), checks, calls, status=True)
+    return f.program("forward_dynamics", about, given, (result,), tuple(checks), calls, status=True)
 
 
 def _coordinate_rates(f: Functions) -> Program:
@@ -336,13 +200,18 @@ def _energy(f: Functions) -> Program:
         "Kinetic and potential energy (gravity and springs) of all that moves; that of gravity is zero "
         "at the origin of ground."
     )
-    result = Result("E", (2,), (kinetic, stored), "kinetic and potential energy (J)")
+    entries: tuple[Scalar, ...] = (kinetic, stored)
+    if f.exchange is not None:
+        entries = (*entries, f.exchange.energy())
+        about += " The third is what scalar networks store, heat left out."
+    result = Result("E", (len(entries),), entries, "kinetic and potential energy (J)")
     return f.program("energy", about, ("q", "v"), (result,))
 
 
 Maker = Callable[[Functions], tuple[Program | Routine, ...]]
 
 PROGRAMS: dict[str, Maker] = {
+    "algebraic_loop": network_programs.algebraic_loop,
     "mass_matrix": lambda f: (_mass_matrix(f),),
     "bias": lambda f: (_bias(f),),
     "equations": lambda f: (_equations(f),),
@@ -353,6 +222,7 @@ PROGRAMS: dict[str, Maker] = {
     ),
     "coordinate_rates": lambda f: (_coordinate_rates(f),),
     "energy": lambda f: (_energy(f),),
+    "rhs": network_programs.rhs,
     "project": closed_programs.project,
     "reduction": closed_programs.reduction,
     "across": edge_programs.across,

@@ -36,13 +36,20 @@ def require_regular(model: Model, formulation: Formulation) -> None:
         model, formulation, anywhere, sample_values(model.parameters.values(), anywhere)
     )
     if not tree.velocities:
-        raise ModelError(f'model "{model.name}"', "no joint can move: there is nothing to derive")
+        raise ModelError(f'model "{model.name}"', _nothing(model))
     if tree.closed or all(is_solid(link) for link in tree.links):
         return  # with constraints, whether M is regular on the motions they allow is asked at assembly
     failures = [_first_dependent(tree, seed) for seed in (1, 2)]
     if all(failures):
         index, pivot = failures[-1] or (0, 0.0)
         raise _refusal(_link_of(tree, index), pivot)
+
+
+def _nothing(model: Model) -> str:
+    """What to tell of a model without states."""
+    if not model.components:
+        return "no joint can move: there is nothing to derive"
+    return "has no state: nothing in it moves or stores energy, so there is nothing to integrate"
 
 
 def _refusal(link: Link, pivot: float) -> ModelError:
@@ -88,7 +95,8 @@ def _first_dependent(tree: KinematicTree, seed: int) -> tuple[int, float] | None
     tree.normalise(q)
     crossed = arms(tree, Floats(), q, [0.0] * len(tree.velocities))
     rows = mass_matrix(tree, Floats(), crossed)
-    return _failing_pivot(rows, _scales(tree, composites(tree, Floats(), crossed)), tree.outward)
+    outward = tree.outward[: tree.layout.mechanical]
+    return _failing_pivot(rows, _scales(tree, composites(tree, Floats(), crossed)), outward)
 
 
 def _scales(tree: KinematicTree, carried: list[Moments]) -> list[float]:
@@ -107,7 +115,7 @@ def _failing_pivot(
 ) -> tuple[int, float] | None:
     """M = L^T D L from the leaves to the root: the first pivot that is not positive, 0.0 for dust."""
     m = [list(row) for row in m]
-    for place in reversed(range(len(m))):
+    for place in reversed(range(len(outward))):
         k = outward[place]
         pivot = m[k][k]
         if not pivot > SINGULAR * scales[k]:

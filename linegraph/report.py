@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from linegraph.graph import IntegerMatrix
     from linegraph.kinematics import KinematicTree
     from linegraph.model import Model
+    from linegraph.network import Network
+    from linegraph.topology import Topology
 
 WIDEST_TABLE = 120
 """A matrix wider than this many characters is written row by row as sums."""
@@ -32,25 +34,61 @@ def show(derivation: Derivation, heading: Callable[[str], str] = str) -> str:
         heading: how to decorate a heading, e.g. in bold on a terminal.
     """
     tree = derivation.structure
-    sections = (
-        (f"model {derivation.model.name}", _summary(derivation, tree)),
-        ("bodies", _bodies(derivation.model)),
-        ("joints", _joints(derivation)),
-        ("domains", _domains(derivation)),
-        (f"graph: edges tail -> head, {_likeness(derivation)}", _graph(derivation)),
-        ("tree: links from ground outward", _tree(tree)),
-        ("coordinates", _coordinates(tree)),
-        *((("constraints", _constraints(derivation)),) if tree.closed else ()),
-        ("cutset equations [U A] Y = 0: A, branches x chords", _matrix(derivation.topology.cutset)),
-        (
-            "circuit equations [B U] X = 0: B, chords x branches",
-            _matrix(derivation.topology.circuit),
-        ),
-        *_in_rotation(derivation),
-    )
+    mechanics = bool(derivation.model.bodies)
+    sections = [(f"model {derivation.model.name}", _summary(derivation, tree))]
+    if mechanics:
+        sections += [("bodies", _bodies(derivation.model)), ("joints", _joints(derivation))]
+    if derivation.model.components:
+        sections.append(("components", _components(derivation.model)))
+    sections.append(("domains", _domains(derivation)))
+    if mechanics:
+        title = f"graph: edges tail -> head, {_likeness(derivation)}"
+        sections += [
+            (title, _graph(derivation.topology)),
+            ("tree: links from ground outward", _tree(tree)),
+        ]
+    sections.append(("coordinates", _coordinates(tree)))
+    if tree.closed:
+        sections.append(("constraints", _constraints(derivation)))
+    if mechanics:
+        sections += [*_topological(derivation.topology, ""), *_in_rotation(derivation)]
+    if tree.network is not None:
+        sections += _networks(tree.network)
     return "\n".join(
         line for title, lines in sections for line in (heading(title), *_indented(lines), "")
     )
+
+
+def _topological(topology: Topology, where: str) -> list[tuple[str, Lines]]:
+    """The cutset and the circuit matrix of a tree."""
+    return [
+        (f"cutset equations{where} [U A] Y = 0: A, branches x chords", _matrix(topology.cutset)),
+        (f"circuit equations{where} [B U] X = 0: B, chords x branches", _matrix(topology.circuit)),
+    ]
+
+
+def _networks(network: Network) -> list[tuple[str, Lines]]:
+    """The graph and the normal tree of each scalar subspace, and what to know of the states."""
+    sections: list[tuple[str, Lines]] = []
+    for topology in network.topologies:
+        domain = topology.projection.domain
+        sections.append((f"{domain} graph: edges tail -> head", _graph(topology)))
+        if topology.branches and topology.chords:
+            sections += _topological(topology, f" in {domain}")
+    if network.remarks:
+        sections.append(("remarks", list(network.remarks)))
+    return sections
+
+
+def _components(model: Model) -> Lines:
+    rows = [("component", "type", "edges")]
+    for component in model.components:
+        edges = []
+        for port in component.ports():
+            where = port.joint or " -> ".join(port.between or port.points or ())
+            edges.append(f"{port.label}: {where}" if port.label else where)
+        rows.append((component.name, component.kind, "; ".join(edges)))
+    return _table(rows)
 
 
 def _likeness(derivation: Derivation) -> str:
@@ -93,14 +131,22 @@ def assembled(derivation: Derivation, found: Assembly) -> str:
 
 def _summary(derivation: Derivation, tree: KinematicTree) -> Lines:
     graph, model = derivation.topology, derivation.model
-    return [
-        f"{len(model.bodies)} bodies, {len(model.joints)} joints, {len(tree.links)} moving links",
-        f"{len(tree.positions)} coordinates q, {len(tree.velocities)} velocities v, "
-        f"{len(tree.inputs)} inputs u",
-        f"{len(graph.projection.vertices)} vertices, {len(graph.projection.edges)} edges: "
-        f"{len(graph.branches)} branches, {len(graph.chords)} chords (per domain)",
-        f"gravity {_vector(model.gravity)} m/s^2",
+    states = len(tree.velocities) - tree.layout.mechanical
+    lines = [
+        f"{len(tree.positions)} coordinates q, {len(tree.velocities)} velocities v"
+        f"{f', {states} of them states of networks' * bool(states)}, {len(tree.inputs)} inputs u",
     ]
+    if model.bodies:
+        counts = f"{len(model.joints)} joints, {len(tree.links)} moving links"
+        lines.insert(0, f"{len(model.bodies)} bodies, {counts}")
+        lines += [
+            f"{len(graph.projection.vertices)} vertices, {len(graph.projection.edges)} edges: "
+            f"{len(graph.branches)} branches, {len(graph.chords)} chords (per domain)",
+            f"gravity {_vector(model.gravity)} m/s^2",
+        ]
+    if model.components:
+        lines.insert(0, f"{len(model.components)} components in networks")
+    return lines
 
 
 def _bodies(model: Model) -> Lines:
@@ -131,16 +177,16 @@ def _joints(derivation: Derivation) -> Lines:
 def _domains(derivation: Derivation) -> Lines:
     rows = [("domain", "across", "through", "dimension")]
     for name in derivation.graph.domains:
-        domain = DOMAINS[name]
+        domain = derivation.model.domains.get(name) or DOMAINS[name]
         across, through = (f"{x.name} / ({x.symbol})" for x in (domain.across, domain.through))
         rows.append((name, across, through, str(domain.dimension)))
     return _table(rows)
 
 
-def _graph(derivation: Derivation) -> Lines:
-    branches = {edge.name for edge in derivation.topology.branches}
+def _graph(topology: Topology) -> Lines:
+    branches = {edge.name for edge in topology.branches}
     rows = [("edge", "tail -> head", "")]
-    for edge in derivation.topology.projection.edges:
+    for edge in topology.projection.edges:
         role = "branch" if edge.name in branches else "chord"
         rows.append((edge.name, f"{edge.tail} -> {edge.head}", role))
     return _table(rows)

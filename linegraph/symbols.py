@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import sympy
 
@@ -11,55 +11,23 @@ from linegraph import orthogonality
 from linegraph.checks import nearest
 from linegraph.closure import Chords, equations
 from linegraph.errors import ModelError
-from linegraph.expression import Dag, Node
-from linegraph.functions import ARITY
 from linegraph.inverse_scheme import InverseScheme
-from linegraph.loads import Applied, applied
-from linegraph.mass_matrix import mass_matrix
+from linegraph.loads import Applied, applied, efforts
+from linegraph.observation import observed
 from linegraph.paper import PaperMatrices, paper_matrices
 from linegraph.paper_print import PrintedMatrices, printed_matrices
 from linegraph.parameters import valued
 from linegraph.scope import relations
+from linegraph.state_space import StateSpace, state_space
+from linegraph.sympy_walk import Expr, Sympy, evaluate, to_sympy
+from linegraph.united import exchange_at, network_entries, united_mass_matrix
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Mapping
 
-    from linegraph.algebra import Algebra
     from linegraph.derive import Derivation
+    from linegraph.exchange import Exchange
     from linegraph.kinematics import KinematicTree
-    from linegraph.vector import Scalar
-
-Expr: TypeAlias = Any
-"""A sympy expression; sympy carries no types."""
-
-RENAMED = {"abs": "Abs", "min": "Min", "max": "Max"}
-"""Functions that sympy calls otherwise."""
-
-
-class Sympy:
-    """The algebra of sympy expressions: every argument's entry is a symbol of its own name.
-
-    Args:
-        names: for each argument, the symbols' names in order.
-    """
-
-    def __init__(self, names: Mapping[str, Iterable[str]] | None = None) -> None:
-        """Keep the names that symbols are shown with."""
-        self._names = {argument: list(given) for argument, given in (names or {}).items()}
-
-    def symbol(self, argument: str, place: int | str | None = None) -> Expr:
-        """The symbol of this entry."""
-        if place is None or isinstance(place, str):
-            return sympy.Symbol(place or argument)
-        return sympy.Symbol(self._names[argument][place])
-
-    sin = staticmethod(sympy.sin)
-    cos = staticmethod(sympy.cos)
-    sqrt = staticmethod(sympy.sqrt)
-
-    def function(self, name: str, *x: Expr) -> Expr:
-        """Any function of `functions.ARITY`."""
-        return getattr(sympy, RENAMED.get(name, name))(*x)
 
 
 class Symbolic:
@@ -69,7 +37,7 @@ class Symbolic:
     (``root_wx``) where v is not the derivative of q.
 
     Attributes:
-        q, v: column matrices of symbols.
+        q, v, u: column matrices of symbols.
     """
 
     def __init__(self, derivation: Derivation) -> None:
@@ -77,10 +45,13 @@ class Symbolic:
         self._derivation = derivation
         self._model = derivation.model
         positions, rates, inputs = _names(derivation.structure, derivation.model.parameters)
-        self.algebra = Sympy({"q": positions, "v": rates, "u": inputs})
+        network = derivation.formulation.network
+        loop = () if network is None else network.loop_names
+        self.algebra = Sympy({"q": positions, "v": rates, "u": inputs, "loop": loop})
         declared = derivation.model.parameters.values()
         self._parameters = valued(declared, self.algebra, lambda p: sympy.Symbol(p.name))
         self.tree: KinematicTree = derivation.tree(self.algebra, self._parameters)
+        self.u = sympy.Matrix([sympy.Symbol(name) for name in inputs])
         self.q = sympy.Matrix([sympy.Symbol(name) for name in positions])
         self.v = sympy.Matrix([sympy.Symbol(name) for name in rates])
 
@@ -91,7 +62,8 @@ class Symbolic:
     @cached_property
     def mass_matrix(self) -> Expr:
         """M(q) as a sympy Matrix, simplified entry by entry."""
-        rows = mass_matrix(self.tree, self.algebra, self._arms)
+        entries = network_entries(self._exchange, self.algebra)
+        rows = united_mass_matrix(self.tree, self.algebra, self._arms, entries)
         return sympy.Matrix(rows).applyfunc(simplified)
 
     @cached_property
@@ -101,6 +73,81 @@ class Symbolic:
             self.tree, self.algebra, self._arms, applied=self._applied
         )
         return sympy.Matrix(rows).applyfunc(simplified)
+
+    @cached_property
+    def forces(self) -> Expr:
+        """Q(q, v, u) as a sympy column Matrix: efforts, and all that inputs drive."""
+        acting = self._acted(driven=True)
+        active = orthogonality.generalised_forces(self.tree, self.algebra, self._arms, acting)
+        found = efforts(self.tree, self.algebra, self._chords, active)
+        return sympy.Matrix(found).applyfunc(simplified)
+
+    @cached_property
+    def rates(self) -> Expr:
+        """v̇ = M⁻¹ (Q - h) as a sympy column Matrix: for small systems, and those of networks.
+
+        Raises:
+            ModelError: there are constraints.
+        """
+        if self.tree.closed:
+            raise ModelError(
+                "rates", "there are constraints; their multipliers have no closed form"
+            )
+        rows = united_mass_matrix(
+            self.tree, self.algebra, self._arms, network_entries(self._exchange, self.algebra)
+        )
+        right = self.forces - self.bias
+        return sympy.Matrix(rows).LUsolve(right).applyfunc(sympy.simplify)
+
+    @cached_property
+    def outputs(self) -> dict[str, Expr]:
+        """What the model asks for by name; what depends on v̇ has it put in."""
+        state = (tuple(self.q), tuple(self.v))
+        found, _ = observed(
+            self._model,
+            self.tree,
+            self.algebra,
+            self._parameters,
+            self._chords,
+            state,
+            self._scheme,
+        )
+        names = [output.name for output in self._model.outputs]
+        known = set(self.a)
+        expressions = [sympy.sympify(x, strict=True) for x in found]
+        if any(x.free_symbols & known for x in expressions):
+            solved = dict(zip(self.a, self.rates, strict=True))
+            expressions = [x.subs(solved) for x in expressions]
+        return dict(zip(names, map(sympy.simplify, expressions), strict=True))
+
+    @cached_property
+    def state_space(self) -> StateSpace:
+        """A, B, C, D of a linear system; its outputs are the model's, or all states where it has none.
+
+        Raises:
+            ModelError: it is not linear.
+        """
+        steep = {u: sympy.Symbol(f"{u}_rate") for u in self.u}
+        slopes = {u: rate for u, rate in steep.items() if rate in set(self.u)}
+        inputs = [u for u in self.u if u not in slopes.values()]
+        states = [*self.q, *self.v]
+        outputs = self.outputs or {str(x): x for x in states}
+        defaults = {
+            p.name: float(p.value)
+            for p in self._model.parameters.values()
+            if p.value is not None and not p.derived
+        }
+        velocities = orthogonality.coordinate_rates(
+            self.tree, self.algebra, list(self.q), list(self.v)
+        )
+        return state_space(states, [*velocities, *self.rates], inputs, slopes, outputs, defaults)
+
+    @cached_property
+    def _exchange(self) -> Exchange | None:
+        """The networks."""
+        chords = Chords(self.tree, self.algebra, self._arms, self._parameters)
+        state = (tuple(self.q), tuple(self.v))
+        return exchange_at(self._model, self.tree, self.algebra, self._parameters, chords, state)
 
     @cached_property
     def constraints(self) -> Expr:
@@ -197,9 +244,18 @@ class Symbolic:
     @cached_property
     def _applied(self) -> Applied:
         """Elements and loads that no input drives."""
+        return self._acted(driven=False)
+
+    def _acted(self, *, driven: bool) -> Applied:
         state = (tuple(self.q), tuple(self.v))
         return applied(
-            self._model, self.tree, self.algebra, self._parameters, self._arms, *state, driven=False
+            self._model,
+            self.tree,
+            self.algebra,
+            self._parameters,
+            self._arms,
+            *state,
+            driven=driven,
         )
 
 
@@ -241,116 +297,4 @@ def _whole(expression: Expr) -> Expr:
     )
 
 
-def evaluate(expression: Expr, algebra: Algebra, parameters: Mapping[str, Scalar]) -> Scalar:
-    """Walk a sympy expression of parameters into another algebra.
-
-    Raises:
-        ModelError: a symbol is no parameter, or an operation has no counterpart in emitted code.
-
-    Example:
-        >>> from linegraph.algebra import Floats
-        >>> m, l = sympy.symbols("m l")
-        >>> evaluate(m * l**2 / 3, Floats(), {"m": 6.0, "l": 0.5})
-        0.5
-    """
-
-    def walk(e: Expr) -> Scalar:
-        if e.is_Symbol:
-            if e.name not in parameters:
-                problem = "is used but not declared; declare it with model.parameter(...)"
-                raise ModelError(f'parameter "{e.name}"', problem)
-            return parameters[e.name]
-        if e.is_Number or e.is_NumberSymbol:
-            return number(e)
-        return _apply(e, [walk(part) for part in e.args], algebra)
-
-    return walk(sympy.sympify(expression, strict=True))
-
-
-def number(e: Expr) -> Scalar:
-    """A sympy number as an int where exact, else as a float."""
-    return int(e) if e.is_Integer else float(e)
-
-
-def _apply(e: Expr, parts: list[Scalar], algebra: Algebra) -> Scalar:
-    """One operation of sympy's over another algebra."""
-    if e.is_Add:
-        return _fold(lambda a, b: a + b, parts)
-    if e.is_Mul:
-        return _fold(lambda a, b: a * b, parts)
-    if e.is_Pow:
-        return power(parts[0], e.exp, algebra)
-    name = _OURS.get(e.func.__name__, e.func.__name__)
-    if name in ("min", "max"):
-        return _fold(lambda a, b: algebra.function(name, a, b), parts)
-    if ARITY.get(name) == len(parts):
-        return algebra.function(name, *parts)
-    raise ModelError("", f"{name}(...) in {e} has no counterpart in emitted code")
-
-
-_OURS = {theirs: ours for ours, theirs in RENAMED.items()}
-
-
-def power(base: Scalar, exponent: Expr, algebra: Algebra) -> Scalar:
-    """Integer and half-integer powers by products, roots and one division.
-
-    Raises:
-        ModelError: any other exponent.
-    """
-    twice = 2 * (sympy.Rational(float(exponent)) if exponent.is_Float else exponent)
-    if not twice.is_Integer or abs(twice) > 128:
-        raise ModelError("", f"the power {exponent} has no counterpart in emitted code")
-    whole, half = divmod(abs(int(twice)), 2)
-    result: Scalar = algebra.sqrt(base) if half else 1
-    for _ in range(whole):
-        result = result * base
-    if not exponent.is_negative:
-        return result
-    if isinstance(result, (int, float)) and result == 0:
-        raise ModelError("", "a division by zero at the parameters' values")
-    return 1 / result
-
-
-def to_sympy(node: Scalar, dag: Dag, names: Mapping[str, Iterable[str]]) -> Expr:
-    """A DAG node as a sympy expression, intermediates substituted."""
-    algebra = Sympy(names)
-    known: dict[int, Expr] = {}
-    pending = [node]
-    while pending:
-        top = pending[-1]
-        if not isinstance(top, Node) or top.index in known:
-            pending.pop()
-            continue
-        waiting = [x for x in (top.a, top.b) if isinstance(x, Node) and x.index not in known]
-        if waiting and top.op != "symbol":
-            pending += waiting
-            continue
-        known[top.index] = _shown(top, known, algebra)
-        pending.pop()
-    return known[node.index] if isinstance(node, Node) else sympy.sympify(node, strict=True)
-
-
-def _shown(node: Node, known: Mapping[int, Expr], algebra: Sympy) -> Expr:
-    def operand(x: Any) -> Expr:
-        return known[x.index] if isinstance(x, Node) else sympy.sympify(x, strict=True)
-
-    if node.op == "symbol":
-        return algebra.symbol(node.a, node.b)
-    actions: dict[str, Callable[..., Expr]] = {
-        "neg": lambda a: -a,
-        "add": lambda a, b: a + b,
-        "sub": lambda a, b: a - b,
-        "mul": lambda a, b: a * b,
-        "div": lambda a, b: a / b,
-    }
-    operands = [operand(x) for x in (node.a, node.b) if x is not None]
-    if node.op in actions:
-        return actions[node.op](*operands)
-    return algebra.function(node.op, *operands)
-
-
-def _fold(action: Callable[[Scalar, Scalar], Scalar], parts: list[Scalar]) -> Scalar:
-    result = parts[0]
-    for part in parts[1:]:
-        result = action(result, part)
-    return result
+__all__ = ["Expr", "Symbolic", "Sympy", "evaluate", "simplified", "to_sympy"]

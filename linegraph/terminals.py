@@ -10,6 +10,7 @@ from linegraph.domains import ROTATION, TRANSLATION
 from linegraph.elements import Element, Load
 from linegraph.errors import ModelError
 from linegraph.graph import Edge, SystemGraph, unite
+from linegraph.network.edges import edges_of, terminal_graph
 from linegraph.rotation import IDENTITY_MATRIX
 from linegraph.vector import ZERO
 
@@ -62,6 +63,7 @@ def system_graph(model: Model) -> SystemGraph:
     for limit in model.constraints:
         _require_ends(f'{limit.kind} "{limit.name}"', limit.ends, terminals)
         graphs.append([Edge(limit.name, limit.name, d, *limit.ends) for d in MECHANICAL])
+    graphs.append(terminal_graph(edges_of(model.components)))
     return unite(graphs)
 
 

@@ -90,6 +90,7 @@ class _Walk:
             tuple(end for end in ends.values() if self._left_out(end.component.name)),
             self._model.relations,
             ends,
+            self._formulation.network,
         )
 
     def _left_out(self, name: str) -> bool:

@@ -127,7 +127,10 @@ def test_needs_nothing_but_the_mathematics_library(
     assert needed <= {"sin", "cos", "sincos", "sqrt"}, needed
     assert kinds <= {"U", "T", "t", "R", "r", "D", "d"}
     writable = {row[-1] for row in rows if row[-2] in "Dd"}
-    assert writable <= {f"anymal_{x}_names" for x in (*"qvu", "across", "reaction")} or not writable
+    assert (
+        writable <= {f"anymal_{x}_names" for x in (*"qvu", "across", "reaction", "state")}
+        or not writable
+    )
 
 
 def test_a_singular_mass_matrix_is_a_status(tmp_path: Path) -> None:

@@ -204,12 +204,20 @@ CLOSED = (
 """Systems with constraints: `test_closed_examples` compares them."""
 
 
+NETWORKS = (
+    *("arm_with_drives", "cart_pole_motor", "cauer_filter", "condenser_microphone"),
+    *("electro_hydraulic_servo", "excavator_arm", "loudspeaker", "magnetic_levitation"),
+    *("motor_warming_up", "quarter_car_1d", "ring_modulator", "rlc_ladder", "synchronous_machine"),
+)
+"""Scalar networks: `test_network_examples` and `test_mechatronic_examples` compare them."""
+
+
 def test_every_example_is_here() -> None:
     folders = {path.name for path in FOLDER.iterdir() if list(path.glob("*.toml"))}
-    assert folders == {*NAMES, *CLOSED}
+    assert folders == {*NAMES, *CLOSED, *NETWORKS}
 
 
-@pytest.mark.parametrize("name", [*NAMES, *CLOSED])
+@pytest.mark.parametrize("name", [*NAMES, *CLOSED, *NETWORKS])
 def test_readme_says_what_it_is_and_how_it_is_used(name: str) -> None:
     readme = (FOLDER / name / "README.md").read_text(encoding="utf-8")
     path = f"examples/{name}/{name}.toml"

@@ -633,7 +633,7 @@ OUTPUTS = {
     "force_of_a_body": output('"force(arm).x"', 'no joint or constraint "arm"'),
     "force_of_a_misspelt_joint": output('"force(hnge).x"', 'did you mean "hinge"?'),
     "torque_without_a_component": output('"torque(hinge)"', "is a vector"),
-    "across_a_joint": output('"across(hinge)"', 'no force element "hinge"'),
+    "across_a_joint": output('"across(hinge)"', 'no force element or component "hinge"'),
     "through_a_component": output('"through(hinge).x"', "only numbers, names"),
     "x": output('"x"', "x cannot stand here"),
     "unknown": output('"hing"', 'no "hing"; did you mean "hinge"?'),

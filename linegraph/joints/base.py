@@ -164,6 +164,11 @@ class Joint:
         """The q at which head and tail frames coincide."""
         return (0.0,) * len(self.positions())
 
+    def prescribed_values(self) -> tuple[Any, ...]:
+        """The model values of a prescribed motion; none where it is free or comes from inputs."""
+        given = tuple(self.drive) if isinstance(self.drive, (tuple, list)) else (self.drive,)
+        return () if given in ((None,), (BY_INPUT,)) else given
+
     def require_start(self) -> None:
         """Refuse start values that are no coordinates.
 

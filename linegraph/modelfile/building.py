@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from linegraph.body import GROUND
+from linegraph.components import COMPONENTS
 from linegraph.constraints import CONSTRAINTS
 from linegraph.elements import ELEMENTS
 from linegraph.joints import JOINTS
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
     from linegraph.modelfile.document import Document
     from linegraph.words import BodyHandle
 
-SHARED = {*JOINTS, *ELEMENTS, "load", *CONSTRAINTS, "relation"}
+SHARED = {*JOINTS, *ELEMENTS, "load", *CONSTRAINTS, "relation", *COMPONENTS}
 """Types whose names must differ from each other: each names an edge."""
 
 THINGS = {**dict.fromkeys(JOINTS, "joint"), "frame": "frame"}
@@ -97,6 +98,8 @@ class _Builder:
             self._data.get("parameters", {}), self._spot("parameters"), self._names, self._model
         )
         read_inputs(self._data.get("inputs", {}), self._spot("inputs"), self._names, self._model)
+        for kind, name in self._tables("domain"):
+            self._element(kind, name)
         self._gravity()
         self._basement()
         for kind, name in self._tables("body"):
@@ -110,6 +113,8 @@ class _Builder:
             self._element(kind, name)
         for kind, name in self._tables("rotor"):
             self._rotor(kind, name)
+        for kind, name in self._tables(*COMPONENTS):
+            self._element(kind, name)
         self._formulation()
         read_outputs(self._data.get("outputs", {}), self._spot("outputs"), self._names, self._model)
         return self._model
@@ -180,6 +185,8 @@ class _Builder:
             self._names.joints[name] = freedoms_of(kind)
         self._names.elements = {name for _, name in self._tables(*ELEMENTS)}
         self._names.constraints = {name for _, name in self._tables(*CONSTRAINTS)}
+        self._names.components = {name: kind for kind, name in self._tables(*COMPONENTS)}
+        self._names.domains = {name for _, name in self._tables("domain")}
 
     def _check_name(self, kind: str, name: str, owners: dict[str, str]) -> None:
         spot = self._spot(kind, name)
@@ -190,7 +197,7 @@ class _Builder:
             if name in owners:
                 first = f"[{owners[name]}.{name}] in line {self._report.line((owners[name], name))}"
                 spot.error(
-                    f"the name is taken by {first}; joints, elements and constraints share their names"
+                    f"the name is taken by {first}; joints, elements, constraints and components share names"
                 )
                 self._refused.add((kind, name))
             owners.setdefault(name, kind)

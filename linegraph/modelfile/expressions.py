@@ -28,7 +28,8 @@ class Scope(IntEnum):
     TIME = 2
     STATE = 3
     OUTPUT = 4
-    LAW = 5
+    NETWORK = 5
+    LAW = 6
 
 
 ALLOWED = {
@@ -38,6 +39,8 @@ ALLOWED = {
     Scope.STATE: "numbers, parameters, t, inputs, coordinates and their rates der(...) may stand here",
     Scope.OUTPUT: "variables of edges, numbers, parameters, t, inputs, coordinates and their rates may "
     "stand here",
+    Scope.NETWORK: "variables of edges, the component's own, numbers, parameters, t, inputs, coordinates "
+    "and their rates may stand here",
     Scope.LAW: "x, v, numbers, parameters, t, inputs, coordinates and their rates may stand here",
 }
 
@@ -58,6 +61,8 @@ class Names:
         joints: every joint of the file and how many freedoms it has; None while that is not known.
         elements: the force elements.
         constraints: the constraints with edges.
+        components: the components of networks, by type.
+        domains: the subspaces that the file adds.
         incomplete: a joint is wrong, so that not all coordinates are known.
     """
 
@@ -69,6 +74,8 @@ class Names:
     joints: dict[str, int | None] = field(default_factory=dict)
     elements: set[str] = field(default_factory=set)
     constraints: set[str] = field(default_factory=set)
+    components: dict[str, str] = field(default_factory=dict)
+    domains: set[str] = field(default_factory=set)
     incomplete: bool = False
 
     def known(self, scope: Scope) -> list[str]:
@@ -83,8 +90,13 @@ class Names:
         return names
 
 
-def read_expression(text: str, scope: Scope, spot: Spot, names: Names) -> Formula | None:
-    """The expression, if it can stand here; None after its errors are noted."""
+def read_expression(
+    text: str, scope: Scope, spot: Spot, names: Names, own: tuple[str, ...] = ()
+) -> Formula | None:
+    """The expression, if it can stand here; None after its errors are noted.
+
+    `own` are further names that mean something here.
+    """
     if not text.strip():
         spot.error("is empty; give a number or an expression")
         return None
@@ -93,11 +105,22 @@ def read_expression(text: str, scope: Scope, spot: Spot, names: Names) -> Formul
     except ModelError as error:
         spot.error(error.problem)
         return None
-    wrong = [_problem(name, scope, spot, names) for name in dict.fromkeys(formula.names())]
+    wrong = [
+        _own_problem(name, names) if name in own else _problem(name, scope, spot, names)
+        for name in dict.fromkeys(formula.names())
+    ]
     problems = [problem for problem in wrong if problem]
     for problem in problems:
         spot.error(problem)
     return None if problems else formula
+
+
+def _own_problem(name: str, names: Names) -> str:
+    if not _declared(name, names):
+        return ""
+    return (
+        f'"{name}" is of the component itself here, but something else has this name; rename that'
+    )
 
 
 def _problem(name: str, scope: Scope, spot: Spot, names: Names) -> str:
@@ -130,10 +153,16 @@ def _variable_problem(
 ) -> str:
     """Why a variable of an edge or a point cannot stand in an expression."""
     kind, thing, _ = variable
+    if scope >= Scope.STATE and kind in ("across", "through"):
+        if thing.partition(".")[0] in names.components:
+            return ""
+        if scope == Scope.NETWORK:
+            hint = spot.report.hint(thing, sorted(names.components))
+            return f'{kind}: there is no component "{thing}"{hint}'
     if scope != Scope.OUTPUT:
         return f"{kind}({thing}) can stand in [outputs] only"
     if kind in ("across", "through"):
-        known, what = set(names.elements), "force element"
+        known, what = {*names.elements, *names.components}, "force element or component"
     elif kind in ("force", "torque"):
         known, what = {*names.joints, *names.constraints}, "joint or constraint"
     else:

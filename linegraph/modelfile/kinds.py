@@ -60,11 +60,13 @@ class Number:
         scope: what the expression may name.
         least: the smallest value it may have; None for any.
         folded: an expression without names becomes its value: what decides the shape of the equations.
+        own: further names that it may use.
     """
 
     scope: Scope = Scope.PARAMETERS
     least: float | None = None
     folded: bool = False
+    own: tuple[str, ...] = ()
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
         """The number, or the text of the expression."""
@@ -79,7 +81,7 @@ class Number:
         return self._expression(value, spot, names)
 
     def _expression(self, text: str, spot: Spot, names: Names) -> Any:
-        formula = read_expression(text, self.scope, spot, names)
+        formula = read_expression(text, self.scope, spot, names, self.own)
         if formula is None:
             return WRONG
         before = spot.report.count

@@ -144,7 +144,7 @@ def rotation_value(value: Any) -> Any:
         return value
     import sympy
 
-    from linegraph.symbols import Sympy
+    from linegraph.sympy_walk import Sympy
 
     formula = parse(value)
     return formula.evaluate(Sympy(), {name: sympy.Symbol(name) for name in formula.names()})

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import MISSING, dataclass, fields, replace
+from inspect import cleandoc
 from typing import TYPE_CHECKING, Any
 
 from linegraph.choices import REACTION_AXES
+from linegraph.components import COMPONENTS
 from linegraph.constraints import CONSTRAINTS, Constraint
 from linegraph.elements import ELEMENTS, Element
 from linegraph.elements.load import BODY, WORLD
@@ -35,6 +37,7 @@ from linegraph.modelfile.kinds import (
     said,
     vector,
 )
+from linegraph.modelfile.networks import DOMAIN, component_table
 from linegraph.modelfile.report import shown
 from linegraph.modelfile.timed import BY_INPUT, Coordinates, Listed, Motion, Start, Timed
 
@@ -46,7 +49,7 @@ if TYPE_CHECKING:
 
 ENTRIES = ("xx", "xy", "xz", "yy", "yz", "zz")
 
-_ATTRIBUTE = re.compile(r"^ {4,8}(\w+(?:, \w+)*): (.*(?:\n {8,}\S.*)*)", re.MULTILINE)
+_ATTRIBUTE = re.compile(r"^ {4}(\w+(?:, \w+)*): (.*(?:\n {8,}\S.*)*)", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -261,7 +264,7 @@ def _abouts(kind: type) -> dict[str, str]:
     """What a dataclass says about its attributes."""
     found: dict[str, str] = {}
     for base in reversed(kind.__mro__):
-        text = (base.__doc__ or "").partition("Attributes:")[2].partition("Example:")[0]
+        text = cleandoc(base.__doc__ or "").partition("Attributes:")[2].partition("Example:")[0]
         for names, about in _ATTRIBUTE.findall(text):
             found |= {name: " ".join(about.split()) for name in names.split(", ")}
     return found
@@ -375,6 +378,8 @@ TYPES: Mapping[str, Table] = {
     **{name: constraint_table(name) for name in CONSTRAINTS},
     "relation": RELATION,
     "rotor": ROTOR,
+    "domain": DOMAIN,
+    **{name: component_table(name, _abouts) for name in COMPONENTS},
 }
 """The tables ``[type.name]``."""
 

@@ -1,0 +1,35 @@
+"""The heat capacity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from linegraph.components.stores import AcrossStore
+from linegraph.domains import THERMAL
+
+if TYPE_CHECKING:
+    from linegraph.components.base import Terminals
+    from linegraph.vector import Scalar
+
+
+@dataclass(frozen=True)
+class HeatCapacity(AcrossStore):
+    """A heat capacity: ``Y = d/dt (capacity X)``. One of its ends is ground, 0 K.
+
+    Attributes:
+        capacity: J/K.
+
+    Example:
+        >>> HeatCapacity("winding", ("winding", "ground"), capacity=40.0).kind
+        'heat_capacity'
+    """
+
+    capacity: Any = None
+    kind = "heat_capacity"
+    domain_name = THERMAL.name
+    required = ("capacity",)
+
+    def constant(self, at: Terminals) -> Scalar:
+        """The capacity."""
+        return at.value(self.capacity)

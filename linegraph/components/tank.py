@@ -1,0 +1,39 @@
+"""The open tank."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from linegraph.components.stores import AcrossStore
+from linegraph.domains import HYDRAULIC
+
+if TYPE_CHECKING:
+    from linegraph.components.base import Terminals
+    from linegraph.vector import Scalar
+
+
+@dataclass(frozen=True)
+class Tank(AcrossStore):
+    """An open tank: ``Y = d/dt (area / (density gravity) X)``. One end is ground, the pressure outside.
+
+    Attributes:
+        area: of the surface (m^2)
+        density: of the liquid (kg/m^3)
+        gravity: m/s^2.
+
+    Example:
+        >>> Tank("basin", ("basin", "ground"), area=2.0).kind
+        'tank'
+    """
+
+    area: Any = None
+    density: Any = 1000
+    gravity: Any = 9.81
+    kind = "tank"
+    domain_name = HYDRAULIC.name
+    required = ("area",)
+
+    def constant(self, at: Terminals) -> Scalar:
+        """Volume by pressure at the bottom."""
+        return at.value(self.area) / (at.value(self.density) * at.value(self.gravity))

@@ -1,0 +1,200 @@
+"""Differentiation of the expression DAG, and rewriting it: what is derived from it stays a DAG.
+
+A *gradient* is sparse: only the symbols that a node depends on have an entry. Functions that have a kink
+(abs, sign, min, max) are differentiated on each side of it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from linegraph.errors import ModelError
+from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL, Dag, Node
+from linegraph.jets import derivatives
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+    from linegraph.algebra import Algebra
+    from linegraph.vector import Scalar
+
+Symbol = tuple[str, Any]
+"""The argument and the place that name a symbol."""
+
+Gradient = dict[Symbol, "Scalar"]
+
+
+class Calculus:
+    """Derivatives and supports of the nodes of one DAG, each found once.
+
+    Example:
+        >>> dag = Dag()
+        >>> x, y = dag.symbol("x"), dag.symbol("y")
+        >>> calculus = Calculus(dag)
+        >>> sorted(calculus.gradient(3 * x + y).items())
+        [(('x', None), 3), (('y', None), 1)]
+        >>> calculus.derivative(x * y, ("x", None)) is y
+        True
+    """
+
+    def __init__(self, dag: Dag) -> None:
+        """Nothing is known yet."""
+        self.dag = dag
+        self._gradients: dict[int, Gradient] = {}
+        self._supports: dict[int, frozenset[Symbol]] = {}
+
+    def support(self, x: Scalar) -> frozenset[Symbol]:
+        """The symbols that a scalar depends on."""
+        if not isinstance(x, Node):
+            return frozenset()
+        for node in _below(x, self._supports):
+            if node.op == SYMBOL:
+                self._supports[node.index] = frozenset({(node.a, node.b)})
+            else:
+                parts = [self._supports[p.index] for p in operands(node)]
+                self._supports[node.index] = parts[0].union(*parts[1:])
+        return self._supports[x.index]
+
+    def derivative(self, x: Scalar, by: Symbol) -> Scalar:
+        """The partial derivative by one symbol."""
+        return self.gradient(x).get(by, 0)
+
+    def gradient(self, x: Scalar) -> Gradient:
+        """The partial derivatives by every symbol that a scalar depends on; those that are 0 left out.
+
+        Raises:
+            ModelError: a function has no derivative.
+        """
+        if not isinstance(x, Node):
+            return {}
+        for node in _below(x, self._gradients):
+            self._gradients[node.index] = self._of(node)
+        return self._gradients[x.index]
+
+    def _of(self, node: Node) -> Gradient:
+        if node.op == SYMBOL:
+            return {(node.a, node.b): 1}
+        found: Gradient = {}
+        for operand, factor in zip(operands(node), self._partials(node), strict=True):
+            for symbol, slope in self._gradients[operand.index].items():
+                found[symbol] = found.get(symbol, 0) + factor * slope
+        return {symbol: slope for symbol, slope in found.items() if slope != 0}
+
+    def _partials(self, node: Node) -> list[Scalar]:
+        """The derivatives of one operation by those of its operands that are nodes."""
+        a, b = node.a, node.b
+        pairs: list[tuple[Any, Callable[[], Scalar]]]
+        if node.op == NEG:
+            pairs = [(a, lambda: -1)]
+        elif node.op == ADD:
+            pairs = [(a, lambda: 1), (b, lambda: 1)]
+        elif node.op == SUB:
+            pairs = [(a, lambda: 1), (b, lambda: -1)]
+        elif node.op == MUL:
+            pairs = [(a, lambda: b), (b, lambda: a)]
+        elif node.op == DIV:
+            pairs = [(a, lambda: 1 / b), (b, lambda: -node / b)]
+        elif b is None:
+            pairs = [(a, lambda: self._slope(node))]
+        else:
+            first, second = self._slopes(node)
+            pairs = [(a, lambda: first), (b, lambda: second)]
+        return [partial() for operand, partial in pairs if isinstance(operand, Node)]
+
+    def _slope(self, node: Node) -> Scalar:
+        if node.op == "abs":
+            return self.dag.function("sign", node.a)
+        if node.op == "sign":
+            return 0
+        found = derivatives(node.op, self.dag, node.a, node)
+        if found is None:
+            raise ModelError("", f"{node.op}(...) has no derivative")
+        return found[0]
+
+    def _slopes(self, node: Node) -> tuple[Scalar, Scalar]:
+        """Of a function of two arguments."""
+        a, b = node.a, node.b
+        if node.op == "atan2":
+            squared = a * a + b * b
+            return b / squared, -a / squared
+        side = self.dag.function("sign", a - b)
+        share = (1 + side) / 2 if node.op == "max" else (1 - side) / 2
+        return share, 1 - share
+
+
+def operands(node: Node) -> list[Node]:
+    """The operands that are nodes."""
+    return [x for x in (node.a, node.b) if isinstance(x, Node)] if node.op != SYMBOL else []
+
+
+def _below(x: Node, known: Mapping[int, Any]) -> list[Node]:
+    """What a node depends on and is not known yet, itself too, in order of construction."""
+    found: dict[int, Node] = {}
+    pending = [x]
+    while pending:
+        node = pending.pop()
+        if node.index not in found and node.index not in known:
+            found[node.index] = node
+            pending += operands(node)
+    return [found[index] for index in sorted(found)]
+
+
+_OPERATIONS: dict[str, Callable[..., Scalar]] = {
+    NEG: lambda a: -a,
+    ADD: lambda a, b: a + b,
+    SUB: lambda a, b: a - b,
+    MUL: lambda a, b: a * b,
+    DIV: lambda a, b: a / b,
+}
+
+
+class Replay:
+    """The same operations over another algebra, or over the same DAG with symbols replaced.
+
+    Args:
+        algebra: where to calculate.
+        symbol: what stands for a symbol there, given its argument and place.
+
+    Example:
+        >>> from linegraph.algebra import Floats
+        >>> dag = Dag()
+        >>> x = dag.symbol("x")
+        >>> Replay(Floats(), {("x", None): 3.0}.__getitem__)(x * x)
+        9.0
+    """
+
+    def __init__(self, algebra: Algebra, symbol: Callable[[Symbol], Scalar]) -> None:
+        """Nothing is calculated yet; what has been is kept."""
+        self._algebra = algebra
+        self._symbol = symbol
+        self._known: dict[int, Scalar] = {}
+
+    def __call__(self, x: Scalar) -> Scalar:
+        """The scalar over the other algebra."""
+        if not isinstance(x, Node):
+            return x
+        for node in _below(x, self._known):
+            self._known[node.index] = self._value(node)
+        return self._known[x.index]
+
+    def all(self, given: Iterable[Scalar]) -> list[Scalar]:
+        """Several of them."""
+        return [self(x) for x in given]
+
+    def _value(self, node: Node) -> Scalar:
+        if node.op == SYMBOL:
+            return self._symbol((node.a, node.b))
+        parts = [self._known[x.index] if isinstance(x, Node) else x for x in (node.a, node.b)]
+        given = parts if node.b is not None else parts[:1]
+        action = _OPERATIONS.get(node.op)
+        return action(*given) if action else self._algebra.function(node.op, *given)
+
+
+def substitute(x: Scalar, dag: Dag, values: Mapping[Symbol, Scalar]) -> Scalar:
+    """A scalar of a DAG with some symbols replaced by others of its scalars."""
+    return substitution(dag, values)(x)
+
+
+def substitution(dag: Dag, values: Mapping[Symbol, Scalar]) -> Replay:
+    """The same for many scalars."""
+    return Replay(dag, lambda symbol: values[symbol] if symbol in values else dag.symbol(*symbol))

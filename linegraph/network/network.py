@@ -1,0 +1,192 @@
+"""A network derived: what the rest of the program knows of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from linegraph.differentiation import substitution
+from linegraph.network.static import LOOP
+from linegraph.residues import Residues
+
+if TYPE_CHECKING:
+    from linegraph.differentiation import Symbol
+    from linegraph.expression import Dag
+    from linegraph.network.edges import Branch
+    from linegraph.network.laws import Laws
+    from linegraph.program import Quantity
+    from linegraph.topology import Topology
+    from linegraph.vector import Scalar
+
+SPRINGS = ("translational_spring", "rotational_spring")
+INPUTS = ("u", "du", "ddu")
+RATE, SHAFT_RATE = "dz", "dw"
+"""Symbols of the rates of states, by their place, and of what edges in mechanics accelerate with."""
+
+
+@dataclass(frozen=True)
+class State:
+    """A state of a network: its quantity and the symbol it is."""
+
+    quantity: Quantity
+    key: Symbol
+
+
+@dataclass(frozen=True)
+class Network:
+    """A network derived.
+
+    Attributes:
+        laws: its terminal equations, and the DAG all its scalars are of.
+        branches: its edges.
+        topologies: the chosen tree of each subspace.
+        states: z, in the order of the components.
+        mass: 𝓜 by (row, column): states first, then edges in mechanics; entries that are zero left out.
+        force: f by row; of an edge in mechanics what it drives with.
+        variables: (X, Y) of every edge; they may contain the rates of states.
+        loop: what is zero in the algebraic loop; its unknowns are symbols.
+        dependent: stores that are no states, and on what they depend.
+        rates: inputs whose derivative is needed, with the order.
+        remarks: what a reader should know.
+        energy, heat: what each component stores and dissipates.
+        heats: subspaces whose through times across is no power.
+        loop_names: what the unknowns of the algebraic loop are called.
+    """
+
+    laws: Laws
+    branches: tuple[Branch, ...]
+    topologies: tuple[Topology, ...]
+    states: tuple[State, ...]
+    mass: dict[tuple[int, int], Scalar]
+    force: tuple[Scalar, ...]
+    variables: dict[str, tuple[Scalar, Scalar]]
+    loop: tuple[Scalar, ...]
+    pivots: tuple[Scalar, ...]
+    dependent: dict[str, tuple[str, ...]]
+    rates: dict[str, int]
+    remarks: tuple[str, ...]
+    energy: dict[str, Scalar] = field(default_factory=dict)
+    heat: dict[str, Scalar] = field(default_factory=dict)
+    heats: frozenset[str] = frozenset()
+    loop_names: tuple[str, ...] = ()
+
+    @property
+    def dag(self) -> Dag:
+        """Where all its scalars are."""
+        return self.laws.dag
+
+    @cached_property
+    def ports(self) -> tuple[Branch, ...]:
+        """The edges in 3-D mechanics."""
+        return tuple(branch for branch in self.branches if branch.port.spatial)
+
+    @cached_property
+    def symmetric(self) -> bool:
+        """Whether 𝓜 is, as it must be where nothing but controlled sources makes power."""
+        residues = Residues()
+        return all(
+            residues(entry) == residues(self.mass.get((j, i), 0))
+            for (i, j), entry in self.mass.items()
+        )
+
+    @cached_property
+    def places(self) -> dict[Symbol, int]:
+        """Where each state stands among them."""
+        return {state.key: k for k, state in enumerate(self.states)}
+
+    @cached_property
+    def loop_jacobian(self) -> list[list[Scalar]]:
+        """What is zero in the algebraic loop, by its unknowns."""
+        size = range(len(self.loop))
+        return [[self.laws.calculus.derivative(r, (LOOP, k)) for k in size] for r in self.loop]
+
+    @cached_property
+    def parts(self) -> dict[str, tuple[Scalar, ...]]:
+        """F with all inputs zero, what inputs add to that, and both; by row.
+
+        Where inputs decide an algebraic loop the two cannot be told apart: all of it is called resting.
+        """
+        calculus, dag = self.laws.calculus, self.dag
+        support = {s for row in self.loop for s in calculus.support(row)}
+        inputs = {s for row in self.force for s in calculus.support(row) if s[0] in INPUTS}
+        if any(symbol[0] in INPUTS for symbol in support):
+            return {"resting": self.force, "driven": (0,) * len(self.force), "all": self.force}
+        resting = tuple(substitution(dag, dict.fromkeys(inputs, 0)).all(self.force))
+        pairs = zip(self.force, resting, strict=True)
+        driven = tuple(self._added(row, rest) for row, rest in pairs)
+        return {"resting": resting, "driven": driven, "all": self.force}
+
+    def _added(self, row: Scalar, resting: Scalar) -> Scalar:
+        """What inputs add to a row: their slopes times them, where these are free of inputs."""
+        slopes = {
+            symbol: slope
+            for symbol, slope in sorted(self.laws.calculus.gradient(row).items(), key=repr)
+            if symbol[0] in INPUTS
+        }
+        if any(
+            s[0] in INPUTS for slope in slopes.values() for s in self.laws.calculus.support(slope)
+        ):
+            return row - resting
+        total: Scalar = 0
+        for symbol, slope in slopes.items():
+            total = total + slope * self.dag.symbol(*symbol)
+        return total
+
+    def rate(self, x: Scalar) -> Scalar:
+        """The total derivative of what depends on states, displacements and the time."""
+        total: Scalar = 0
+        follows = {"x": "w", "w": SHAFT_RATE, "u": "du"}
+        for (kind, place), slope in self.laws.calculus.gradient(x).items():
+            rate: Scalar = 1
+            if (kind, place) in self.places:
+                rate = self.dag.symbol(RATE, self.places[(kind, place)])
+            elif kind == "name":
+                rate = self.dag.symbol("name", f"der({place})")
+            elif kind in follows:
+                rate = self.dag.symbol(follows[kind], place)
+            elif kind == "p":
+                continue
+            total = total + slope * rate
+        return total
+
+    @cached_property
+    def gains(self) -> dict[str, Scalar]:
+        """Of each component what it stores and turns into heat, less what it takes in: zero.
+
+        Left out are sources, stores by a charge alone, of which no energy is known, and heat itself.
+        """
+        found: dict[str, Scalar] = {}
+        for component in dict.fromkeys(branch.component for branch in self.branches):
+            own = [b for b in self.branches if b.component is component]
+            hot = any(b.port.domain in self.heats for b in own)
+            if component.source or hot or component.name in self.unknown:
+                continue
+            taken = self.rate(self.energy[component.name]) + self.heat[component.name]
+            for branch in own:
+                x, y = self.variables[branch.name]
+                taken = taken - x * y
+            found[component.name] = taken
+        return found
+
+    @cached_property
+    def unknown(self) -> frozenset[str]:
+        """The components that store by a charge or a law of a state, whose energy is not known."""
+        kinds = {branch.component for branch in self.branches}
+        lawless = {c.name for c in kinds if getattr(c, "rate", None) is not None}
+        lawless |= {c.name for c in kinds if c.kind in SPRINGS and c.force is not None}  # type: ignore[attr-defined]
+        return frozenset(lawless | self.laws.charged)
+
+    @cached_property
+    def powerful(self) -> frozenset[str]:
+        """The components whose stores are in subspaces with a power."""
+        return frozenset(
+            branch.component.name
+            for branch in self.branches
+            if branch.port.domain not in self.heats
+        )
+
+    @cached_property
+    def domains(self) -> tuple[str, ...]:
+        """The scalar subspaces it has."""
+        return tuple(topology.projection.domain for topology in self.topologies)

@@ -1,0 +1,86 @@
+"""Emitted functions that networks add: algebraic loops, and the whole state's derivative at once."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linegraph.program import Argument, Listing, Program, Quantity, Result, Routine, reads
+
+if TYPE_CHECKING:
+    from linegraph.kinematics import KinematicTree
+    from linegraph.shared import Functions
+
+NO_SOLUTION = (900, "the algebraic loop of the network has no solution here, or none was found")
+LOOP_FUNCTION = "algebraic_loop"
+
+
+def algebraic_loop(f: Functions) -> tuple[Program | Routine, ...]:
+    """The residual of the algebraic loop with its Jacobian, and Newton's method on it."""
+    if f.exchange is None or not f.exchange.network.loop:
+        return ()
+    network = f.exchange.network
+    f.dag.label = "network, algebraic loop"
+    residual = tuple(f.exchange.still(r) for r in network.loop)
+    slopes = tuple(f.exchange.still(e) for row in network.loop_jacobian for e in row)
+    size = len(residual)
+    results = (
+        Result("r", (size,), residual, "what is zero at the solution"),
+        Result("K", (size, size), slopes, "its derivative by the unknowns"),
+    )
+    equations = f.program(
+        "loop_equations",
+        "Equations of the network's algebraic loop, for given unknowns.",
+        loop_arguments(f),
+        results,
+    )
+    given = tuple(a for a in equations.arguments if a.name != "loop")
+    solver = Routine(
+        LOOP_FUNCTION,
+        "Solve the network's algebraic loop by Newton's method with halved steps, from zero on.",
+        given,
+        (Result("loop", (size,), (), "unknowns of the algebraic loop"),),
+        "newton",
+        (NO_SOLUTION,),
+        ("loop_equations",),
+        (("size", size), ("failure", NO_SOLUTION[0])),
+    )
+    return equations, solver
+
+
+def loop_arguments(f: Functions) -> tuple[str, ...]:
+    """What the algebraic loop depends on: always the state, inputs where they are in it."""
+    assert f.exchange is not None
+    network = f.exchange.network
+    rows = (*network.loop, *(e for row in network.loop_jacobian for e in row))
+    results = (Result("r", (), tuple(f.exchange.still(r) for r in rows), ""),)
+    return ("q", "v", "u", "loop") if reads("u", results) else ("q", "v", "loop")
+
+
+def rhs(f: Functions) -> tuple[Program | Routine, ...]:
+    """ẋ of the whole state x = (q, v)."""
+    n, m = len(f.q), len(f.v)
+    arguments = (*f.head, "u")
+    given = [Argument(a, f.sizes.get(a), f.texts[a]) for a in arguments]
+    given.insert(len(f.head), Argument("x", n + m, "the whole state (q, v)"))
+    return (
+        Routine(
+            "rhs",
+            "Right-hand side of xdot = f(x, u, t), for integrators: coordinate rates, then forward dynamics.",
+            tuple(given),
+            (Result("xdot", (n + m,), (), "derivative of x"),),
+            "rhs",
+            (),
+            ("coordinate_rates", "forward_dynamics"),
+        ),
+    )
+
+
+def state_listing(tree: KinematicTree) -> Listing:
+    """The names of x: coordinates, then velocities, those of a coordinate's name with _dot."""
+    positions = [quantity.name for quantity in tree.positions]
+    rates = tuple(
+        Quantity(f"{q.name}_dot" if q.name in positions else q.name, q.unit, q.about)
+        for q in tree.velocities
+    )
+    quantities = (*tree.positions, *rates)
+    return Listing("state", "NS", "states, x = (q, v)", quantities, ("x", "xdot"), shown=False)

@@ -1,0 +1,216 @@
+"""What the emitted functions of a model share: one DAG, the tree over it, M and h."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from linegraph import network_programs, orthogonality
+from linegraph.closure import Chords, equations
+from linegraph.expression import Dag
+from linegraph.inverse_scheme import InverseScheme
+from linegraph.loads import Applied, applied, efforts
+from linegraph.parameters import valued
+from linegraph.program import Argument, Call, Check, Program, Result, assemble, reads
+from linegraph.scope import relations
+from linegraph.united import exchange_at, network_entries, united_mass_matrix
+
+if TYPE_CHECKING:
+    from linegraph.derive import Derivation
+    from linegraph.exchange import Exchange
+    from linegraph.vector import Scalar
+
+ORDER = ("q", "v", "u", "a", "lam", "loop")
+"""The order of a function's arguments, after parameters and time."""
+
+ARGUMENTS = {
+    "p": "parameters",
+    "t": "time (s)",
+    "q": "coordinates",
+    "v": "velocities",
+    "a": "accelerations, the derivatives of v",
+    "u": "inputs",
+    "lam": "multipliers of the constraints",
+    "loop": "unknowns of the algebraic loop",
+}
+
+
+class Functions:
+    """What several functions share: the DAG, the tree over it, M and h."""
+
+    def __init__(self, derivation: Derivation, folded: bool) -> None:
+        """Nothing is derived before a function asks for it."""
+        self.dag = Dag()
+        self.derivation = derivation
+        self.model = derivation.model
+        self.head = ["p"] if not folded else []
+        self.head += ["t"] if derivation.model.depends_on_time else []
+        self.values = valued(
+            derivation.model.parameters.values(),
+            self.dag,
+            lambda p: p.value if folded else self.dag.symbol("p", p.name),
+        )
+        self.tree = derivation.tree(self.dag, self.values)
+        self.short = self.tree.regrouped()
+        self.equations = equations(self.tree)
+        self.sizes = {
+            "q": len(self.tree.positions),
+            "v": len(self.tree.velocities),
+            "a": len(self.tree.velocities),
+            "u": len(self.tree.inputs),
+            "lam": len(self.equations),
+            "loop": len(self.tree.network.loop) if self.tree.network else 0,
+        }
+        self.texts = ARGUMENTS
+        self.q = self.symbols("q")
+        self.v = self.symbols("v")
+
+    def symbols(self, name: str) -> list[Scalar]:
+        """The entries of an argument."""
+        return [self.dag.symbol(name, i) for i in range(self.sizes[name])]
+
+    def program(
+        self,
+        name: str,
+        about: str,
+        arguments: tuple[str, ...],
+        results: tuple[Result, ...],
+        checks: tuple[Check, ...] = (),
+        calls: tuple[Call, ...] = (),
+        *,
+        status: bool = False,
+    ) -> Program:
+        """Assemble a function; the arguments follow the contract's order ``p, t, q, v, u, a``.
+
+        Parameters and time are there exactly when the model has them, inputs when the results need them.
+        """
+        loop = reads("loop", results) and "loop" not in arguments
+        if loop:
+            needed = network_programs.loop_arguments(self)[:-1]
+            arguments = (*(a for a in needed if a not in arguments), *arguments)
+        for more in ("v", "u"):
+            if more not in arguments and reads(more, results):
+                arguments = (*arguments, more)
+        arguments = tuple(sorted(arguments, key=ORDER.index))
+        if loop:
+            solved = Argument("loop", self.sizes["loop"], ARGUMENTS["loop"])
+            given_names = (*self.head, *needed)
+            call = Call(network_programs.LOOP_FUNCTION, given_names, (solved,))
+            calls = (call, *calls)
+        given = tuple(
+            Argument(argument, self.sizes.get(argument), ARGUMENTS[argument])
+            for argument in (*self.head, *arguments)
+        )
+        return assemble(name, about, given, results, checks, calls, status=status)
+
+    @cached_property
+    def passive(self) -> Applied:
+        """Springs, dampers and loads that no input drives: part of the bias."""
+        return self._applied(driven=False)
+
+    @cached_property
+    def active(self) -> Applied:
+        """Elements and loads that inputs drive: part of Q."""
+        return self._applied(driven=True)
+
+    def _applied(self, *, driven: bool) -> Applied:
+        state = (tuple(self.q), tuple(self.v))
+        return applied(
+            self.model, self.short, self.dag, self.values, self.arms, *state, driven=driven
+        )
+
+    @cached_property
+    def arms(self) -> list[orthogonality.Arm]:
+        """The joints' motions at (q, v)."""
+        return orthogonality.arms(self.short, self.dag, self.q, self.v)
+
+    @cached_property
+    def mass_matrix(self) -> Result:
+        """M as a result."""
+        rows = united_mass_matrix(self.short, self.dag, self.arms, self.entries)
+        entries = tuple(entry for row in rows for entry in row)
+        return Result("M", (len(rows), len(rows)), entries, "mass matrix, both triangles")
+
+    @cached_property
+    def exchange(self) -> Exchange | None:
+        """The networks at (q, v)."""
+        state = (tuple(self.q), tuple(self.v))
+        chords = Chords(self.short, self.dag, self.arms, self.values)
+        return exchange_at(self.model, self.short, self.dag, self.values, chords, state)
+
+    @cached_property
+    def entries(self) -> list[tuple[int, int, Scalar]]:
+        """What the networks add to the mass matrix."""
+        return network_entries(self.exchange, self.dag)
+
+    @cached_property
+    def symmetric(self) -> bool:
+        """Whether the mass matrix is, whatever the networks add."""
+        return self.tree.network is None or self.tree.network.symmetric
+
+    @cached_property
+    def armatures(self) -> dict[int, Scalar] | None:
+        """What networks add along each velocity of mechanics; None if they tie several to each other."""
+        first = self.tree.layout.mechanical
+        found: dict[int, Scalar] = {}
+        for i, j, entry in self.entries:
+            if i != j and min(i, j) < first:
+                return None
+            if i < first:
+                found[i] = found.get(i, 0) + entry
+        return found
+
+    @cached_property
+    def pattern(self) -> list[list[bool]]:
+        """Where M has entries that are not zero everywhere."""
+        size = len(self.v)
+        used = [entry != 0 for entry in self.mass_matrix.entries]
+        return [used[i * size : (i + 1) * size] for i in range(size)]
+
+    @cached_property
+    def chords(self) -> Chords:
+        """The constraints at (q, v)."""
+        rates = orthogonality.coordinate_rates(self.tree, self.dag, self.q, self.v)
+        state = (tuple(self.q), tuple(self.v))
+        found = relations(self.model, self.tree, self.dag, self.values, state, rates)
+        return Chords(self.tree, self.dag, self.arms, self.values, found)
+
+    @cached_property
+    def jacobian(self) -> list[list[Scalar]]:
+        """J."""
+        return self.chords.jacobian()
+
+    @cached_property
+    def driven_constraints(self) -> bool:
+        """Whether constraints depend on inputs: on motions prescribed by some."""
+        results = (Result("J", (), (*self.chords.position(), *self.chords.rates(self.v)), ""),)
+        return reads("u", results)
+
+    @cached_property
+    def scheme(self) -> InverseScheme:
+        """Every variable of every edge, v̇ and λ as symbols; masses are the model's own."""
+        return InverseScheme(
+            self.derivation,
+            self.tree,
+            self.dag,
+            self.values,
+            self.arms,
+            self.chords,
+            (tuple(self.q), tuple(self.v)),
+            self.symbols("a"),
+            list(zip(self.equations, self.symbols("lam"), strict=True)),
+        )
+
+    @cached_property
+    def efforts(self) -> list[Scalar]:
+        """Q: joint efforts at their velocities, and what driven elements do."""
+        active = orthogonality.generalised_forces(self.short, self.dag, self.arms, self.active)
+        return efforts(self.short, self.dag, self.chords, active)
+
+    @cached_property
+    def bias(self) -> Result:
+        """The bias h as a result."""
+        entries = orthogonality.inverse_dynamics(
+            self.short, self.dag, self.arms, applied=self.passive
+        )
+        return Result("h", (len(entries),), tuple(entries), "bias vector")

@@ -1,0 +1,54 @@
+"""Networks as numbers: what the derivation says of a network, evaluated."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from linegraph.algebra import Floats
+from linegraph.differentiation import Replay
+from linegraph.network import Network, network_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from linegraph import Model
+    from linegraph.differentiation import Symbol
+
+Array = Any
+
+
+def numbers(network: Network, values: Callable[[Symbol], float]) -> Replay:
+    """Scalars of a network as floats."""
+    return Replay(Floats(), values)
+
+
+def linear(model: Model) -> tuple[list[Symbol], Array, dict[int, Array]]:
+    """States, A, and B by the order of the inputs' derivative, of a linear network in numbers."""
+    network = network_of(model)
+    assert network is not None
+    given = {p.name: p.value for p in model.parameters.values()}
+
+    def at_rest(symbol: Symbol) -> float:
+        return float(given[symbol[1]]) if symbol[0] == "p" else 0.0
+
+    value = numbers(network, at_rest)
+    n = len(network.states)
+    mass = np.zeros((n, n))
+    for (i, j), entry in network.mass.items():
+        mass[i, j] = value(entry)
+    slopes = [network.laws.calculus.gradient(f) for f in network.force]
+    inputs = [q.name for q in model.inputs]
+
+    def columns(keys: Sequence[Symbol]) -> Array:
+        return np.array(
+            [[float(value(row.get(key, 0))) for key in keys] for row in slopes]
+        ).reshape(n, len(keys))
+
+    A = np.linalg.solve(mass, columns([s.key for s in network.states]))
+    B = {
+        order: np.linalg.solve(mass, columns([(kind, name) for name in inputs]))
+        for order, kind in enumerate(("u", "du", "ddu"))
+    }
+    return [s.key for s in network.states], A, B
