@@ -45,8 +45,8 @@ def across(f: Functions) -> tuple[Program | Routine, ...]:
 
 
 _THROUGH = (
-    " Then what flows through every edge of networks; what they exert on joints and points is in power, and in "
-    "outputs where these ask for it."
+    " Then what flows through every edge of networks; what they exert on joints and points is in power, and "
+    "in outputs where these ask for it."
 )
 
 

@@ -102,8 +102,8 @@ class Exchange:
         bias = self.motion_of(port).bias
         if bias is None:
             problem = (
-                "reflects inertia to a joint whose own coordinate is no coordinate of the system; put it in a "
-                "joint that is a branch: name that in [formulation] tree, or keep joint coordinates there"
+                "reflects inertia to a joint whose own coordinate is no coordinate of the system; put it in "
+                "a joint that is a branch: name that in [formulation] tree, or keep joint coordinates there"
             )
             component = next(p.component for p in self.network.ports if p.name == port)
             raise ModelError(f'{component.kind} "{component.name}"', problem)

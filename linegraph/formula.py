@@ -15,6 +15,7 @@ import ast
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from linegraph.errors import ModelError
@@ -101,6 +102,7 @@ class Formula:
         return _apply(self.op, operands, algebra)
 
 
+@lru_cache(maxsize=4096)  # a model's expressions are read by all who ask what they name
 def parse(text: str) -> Formula:
     """Read an expression.
 

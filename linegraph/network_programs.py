@@ -56,6 +56,19 @@ def loop_arguments(f: Functions) -> tuple[str, ...]:
     return ("q", "v", "u", "loop") if reads("u", results) else ("q", "v", "loop")
 
 
+def remarks(f: Functions) -> tuple[str, ...]:
+    """What the head of a file says of networks."""
+    if f.tree.network is None:
+        return ()
+    text = (
+        "Edges of networks: the across variable is the potential of the tail less that of the head, the "
+        "through variable flows through the component from tail to head; their product is what it takes in. "
+        "States of networks stand in v behind the velocities, and M and h are widened by their rows."
+    )
+    found = [f"{remark[0].upper()}{remark[1:]}." for remark in f.tree.network.remarks]
+    return (text, *([" ".join(found)] if found else []))
+
+
 def rhs(f: Functions) -> tuple[Program | Routine, ...]:
     """ẋ of the whole state x = (q, v)."""
     n, m = len(f.q), len(f.v)

@@ -66,7 +66,11 @@ def module_of(
     whole = (network_programs.state_listing(tree),) if "rhs" in chosen else ()
     return Module(
         name=name,
-        about=(*about, *closed_programs.remarks(functions)),
+        about=(
+            *about,
+            *closed_programs.remarks(functions),
+            *network_programs.remarks(functions),
+        ),
         positions=tree.positions,
         velocities=tree.velocities,
         inputs=tree.inputs,

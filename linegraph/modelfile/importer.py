@@ -6,12 +6,14 @@ import hashlib
 import os
 from pathlib import PurePath
 
+from linegraph.errors import ModelError
 from linegraph.model import SNAP, Model
 from linegraph.modelfile.building import build
 from linegraph.modelfile.document import parse_document, read_bytes
 from linegraph.modelfile.names import name_problem
 from linegraph.modelfile.report import Report
 from linegraph.modelfile.tables import FLAT
+from linegraph.network.edges import dangling, edges_of, projections
 
 
 def read(path: str | os.PathLike[str], *, snap: float = SNAP) -> Model:
@@ -58,7 +60,29 @@ def parse(text: bytes, source: str, *, snap: float = SNAP) -> Model:
     model = build(document, stem if not name_problem(stem, dots=True) else "model", report, snap)
     report.conclude()
     model.source = report.source
+    model.warnings += _loose_ends(model)
     told = f"Derived from a model file with SHA-256 {hashlib.sha256(text).hexdigest()}."
     about = model.about.rstrip()
     model.about = f"{about}{'' if about[-1] in '.!?' else '.'} {told}" if about else told
     return model
+
+
+def _loose_ends(model: Model) -> list[str]:
+    """Warnings of vertices at which one edge alone ends: mostly a name written wrongly."""
+    try:
+        branches = edges_of(model.components)
+        graphs = projections(branches)
+    except ModelError:
+        return []  # said with its place when the model is derived
+    owners = {branch.name: branch.component for branch in branches}
+    found = []
+    for graph in graphs:
+        for vertex, edge in dangling(graph):
+            component = owners[edge]
+            line = model.places.get(f'{component.kind} "{component.name}"')
+            place = f"{model.source}{f':{line}' * (line is not None)}"
+            found.append(
+                f'{place}: {component.kind} "{component.name}": nothing else is connected to its '
+                f'{graph.domain} vertex "{vertex}", so nothing flows through it'
+            )
+    return found

@@ -136,7 +136,7 @@ class Network:
     def rate(self, x: Scalar) -> Scalar:
         """The total derivative of what depends on states, displacements and the time."""
         total: Scalar = 0
-        follows = {"x": "w", "w": SHAFT_RATE, "u": "du"}
+        follows = {"x": "w", "w": SHAFT_RATE}
         for (kind, place), slope in self.laws.calculus.gradient(x).items():
             rate: Scalar = 1
             if (kind, place) in self.places:
@@ -154,7 +154,8 @@ class Network:
     def gains(self) -> dict[str, Scalar]:
         """Of each component what it stores and turns into heat, less what it takes in: zero.
 
-        Left out are sources, stores by a charge alone, of which no energy is known, and heat itself.
+        Left out are sources, stores by a charge alone, of which no energy is known, stores that inputs
+        change, and heat itself.
         """
         found: dict[str, Scalar] = {}
         for component in dict.fromkeys(branch.component for branch in self.branches):
@@ -162,7 +163,10 @@ class Network:
             hot = any(b.port.domain in self.heats for b in own)
             if component.source or hot or component.name in self.unknown:
                 continue
-            taken = self.rate(self.energy[component.name]) + self.heat[component.name]
+            energy = self.energy[component.name]
+            if any(kind in INPUTS for kind, _ in self.laws.calculus.support(energy)):
+                continue
+            taken = self.rate(energy) + self.heat[component.name]
             for branch in own:
                 x, y = self.variables[branch.name]
                 taken = taken - x * y
