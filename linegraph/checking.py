@@ -51,7 +51,7 @@ class Findings:
     Attributes:
         program: of the emitted program from the float reference.
         paper: of the paper's matrices from the float reference; None where a link turns against ground.
-        power: of the power balance; None where a prescribed motion does work on the system.
+        power: of the power balance of mechanics; None where a prescribed motion does work, or nothing moves.
         audit: of the sums of through times across, relative to the largest power.
     """
 
@@ -79,6 +79,7 @@ def check(derivation: Derivation, seed: int = 0) -> Findings:
     tree = derivation.structure
     driven = any(place.drive for place in tree.layout.places.values())
     driven = driven or any(any(drives) for drives in tree.layout.drives.values())
+    unmoved = not tree.layout.mechanical
     for _ in range(STATES):
         state = _state(derivation, draw)
         M, h = state.reference()
@@ -92,7 +93,7 @@ def check(derivation: Derivation, seed: int = 0) -> Findings:
             worst[2] = max(worst[2], state.power_defect(a))
         worst[3] = max(worst[3], state.audit(a, lam))
     paper = None if tree.levelled else worst[1]
-    return Findings(worst[0], paper, None if driven else worst[2], worst[3])
+    return Findings(worst[0], paper, None if driven or unmoved else worst[2], worst[3])
 
 
 def _state(derivation: Derivation, draw: random.Random) -> _State:
@@ -270,9 +271,8 @@ def report(derivation: Derivation, findings: Findings, heading: Callable[[str], 
     else:
         lines.append(f"  paper's matrices and float reference  {findings.paper:.1e}")
     if findings.power is None:
-        lines.append(
-            "  power balance                         not judged: prescribed motion does work"
-        )
+        why = "prescribed motion does work" if tree.layout.mechanical else "nothing moves"
+        lines.append(f"  power balance                         not judged: {why}")
     else:
         lines.append(f"  power balance                         {findings.power:.1e}")
     lines.append(f"  audit: sum of through times across    {findings.audit:.1e}")

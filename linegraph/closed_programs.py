@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from linegraph import network_programs
 from linegraph.errors import ModelError
 from linegraph.layout import has_plain_rates
 from linegraph.parameters import resolver
@@ -57,7 +58,7 @@ def constraints(f: Functions) -> tuple[Program | Routine, ...]:
 
 
 def _whole(f: Functions) -> Program:
-    force = [effort - h for effort, h in zip(f.efforts, f.bias.entries, strict=True)]
+    force = [effort - h for effort, h in zip(f.driving, f.held, strict=True)]
     about = (
         "All of M vdot = f + J^T lam, J vdot = gam, sharing work: M, f = Q(u) - h, J and gam"
         f"{', stabilised by Baumgarte' * (f.model.choices.baumgarte is not None)}."
@@ -68,7 +69,8 @@ def _whole(f: Functions) -> Program:
         _jacobian(f),
         _column("gam", _stabilised(f), "what J vdot must be"),
     )
-    return f.program("constrained_equations", about, ("q", "v"), results)
+    checks = network_programs.checks(f)
+    return f.program("constrained_equations", about, ("q", "v"), results, checks)
 
 
 def forward_dynamics(f: Functions) -> tuple[Program | Routine, ...]:

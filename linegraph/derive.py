@@ -22,6 +22,7 @@ from linegraph.choices import Choices
 from linegraph.closure import Chords
 from linegraph.errors import ModelError, SourceError
 from linegraph.expression import Dag
+from linegraph.factorization import singular
 from linegraph.formulation import Formulation, formulate
 from linegraph.loads import Applied, applied
 from linegraph.mass_matrix import mass_matrix
@@ -126,6 +127,35 @@ class Derivation:
             require_linear(
                 self.model, numeric.tree, numeric.algebra, numeric.parameters, random.Random(0)
             )
+
+    def require_stores(self) -> None:
+        """Refuse a network whose stores hold nothing at the parameters' own values."""
+        network = self.formulation.network
+        given = all(p.value is not None for p in self.model.parameters.values())
+        if network is None or not network.states or not given:
+            return
+        numeric = self.numeric(t=0.37)
+        draw = random.Random(0)
+        q = [draw.uniform(-1, 1) for _ in numeric.tree.positions]
+        numeric.tree.normalise(q)
+        v = [draw.uniform(-1, 1) for _ in numeric.tree.velocities]
+        first, size = numeric.tree.layout.mechanical, len(network.states)
+        rows = [[0.0] * size for _ in range(size)]
+        try:
+            for i, j, entry in network_entries(numeric.exchange(q, v), numeric.algebra):
+                if min(i, j) >= first:
+                    rows[i - first][j - first] += entry
+        except (ModelError, ArithmeticError):
+            return  # no state like any other: what is wrong there is said at run time
+        place = singular(rows, symmetric=network.symmetric)
+        if place is not None:
+            quantity = network.states[place].quantity
+            problem = (
+                f"{quantity.name} ({quantity.about}) has no rate: what stores it is zero for the parameters' "
+                "values. Leave the component out, or give it a value"
+            )
+            owner = network.owner(network.states[place])
+            raise ModelError(f'{owner.kind} "{owner.name}"', problem)
 
     @cached_property
     def assembled(self) -> Assembly:
@@ -314,6 +344,7 @@ def derive(model: Model) -> Derivation:
         ):
             derivation.require_relations()
             _ = derivation.assembled
+        derivation.require_stores()
     except ModelError as error:
         raise placed(error, model) from None
     return derivation

@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from linegraph.network import Network
     from linegraph.vector import Scalar
 
-RESTING, DRIVEN, ALL = "resting", "driven", "all"
-"""What of the forces is meant: with all inputs zero, what inputs add to that, or both."""
+RESTING, DRIVEN, ALL, NONE = "resting", "driven", "all", "none"
+"""What of the forces is meant: with all inputs zero, what inputs add to that, both, or nothing."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +89,8 @@ class Exchange:
 
     def force(self, row: int, what: str) -> Scalar:
         """F of a row: a state's, or what an edge in mechanics drives with, at v̇ = 0."""
+        if what == NONE:
+            return 0
         found = self.still(self.network.parts[what][row])
         if what != DRIVEN:
             for k, port in enumerate(self.network.ports):

@@ -92,3 +92,19 @@ def _general(
                 x[k] = x[k] - m[k][j] * x[j]
         x[k] = x[k] / pivots[k]
     return Solution(x, pivots)
+
+
+def singular(rows: Sequence[Sequence[float]], *, symmetric: bool) -> int | None:
+    """The first unknown at which a matrix of numbers fails to be solved for; None if it is regular."""
+    if _regular(rows, len(rows), symmetric):
+        return None
+    return next(k for k in range(len(rows)) if not _regular(rows, k + 1, symmetric))
+
+
+def _regular(rows: Sequence[Sequence[float]], size: int, symmetric: bool) -> bool:
+    part = [row[:size] for row in rows[:size]]
+    try:
+        pivots = solve(part, [0.0] * size, range(size), symmetric=symmetric).pivots
+    except ZeroDivisionError:
+        return False
+    return all(abs(pivot) > 0 for pivot in pivots)

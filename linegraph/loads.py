@@ -63,8 +63,11 @@ def applied(
     v: tuple[Scalar, ...],
     *,
     driven: bool,
+    network: str | None = None,
 ) -> Applied:
     """Evaluate the elements and loads that depend on inputs (`driven`), or those that do not.
+
+    Of networks the part with inputs zero, or what inputs add to that; or what `network` says.
 
     Raises:
         ModelError: a law names something that does not exist.
@@ -76,7 +79,7 @@ def applied(
         return Applied([(ZERO, ZERO)] * len(tree.links), [0] * len(tree.velocities))
     found += forces_of(model.components)
     chords = Chords(tree, algebra, crossed, parameters)
-    what = DRIVEN if driven else RESTING
+    what = network or (DRIVEN if driven else RESTING)
     return Acting(model, tree, algebra, parameters, chords, (q, v), what).of(found)
 
 

@@ -4,13 +4,27 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.program import Argument, Listing, Program, Quantity, Result, Routine, reads
+from linegraph.expression import Node
+from linegraph.program import (
+    Argument,
+    Check,
+    Listing,
+    Program,
+    Quantity,
+    Result,
+    Routine,
+    reads,
+)
 
 if TYPE_CHECKING:
     from linegraph.kinematics import KinematicTree
     from linegraph.shared import Functions
 
 NO_SOLUTION = (900, "the algebraic loop of the network has no solution here, or none was found")
+SINGULAR = (
+    901,
+    "the static laws of the network are singular here: a resistance or a ratio is zero",
+)
 LOOP_FUNCTION = "algebraic_loop"
 
 
@@ -45,6 +59,16 @@ def algebraic_loop(f: Functions) -> tuple[Program | Routine, ...]:
         (("size", size), ("failure", NO_SOLUTION[0])),
     )
     return equations, solver
+
+
+def checks(f: Functions) -> tuple[Check, ...]:
+    """That nothing by which the network's static laws are divided is zero."""
+    if f.exchange is None:
+        return ()
+    sizes = dict.fromkeys(
+        f.dag.function("abs", f.exchange.still(pivot)) for pivot in f.exchange.network.pivots
+    )
+    return tuple(Check(size, 0, *SINGULAR) for size in sizes if isinstance(size, Node))
 
 
 def loop_arguments(f: Functions) -> tuple[str, ...]:

@@ -121,8 +121,8 @@ def _forward_dynamics(f: Functions) -> Program:
 
 def _articulated(f: Functions) -> Program:
     """Links by articulated inertias, networks beside them by their own part of the mass matrix."""
-    passive = orthogonality.generalised_forces(f.short, f.dag, f.arms, f.passive)
-    total = [effort + load for effort, load in zip(f.efforts, passive, strict=True)]
+    carried = orthogonality.generalised_forces(f.short, f.dag, f.arms, f.carried)
+    total = [effort + load for effort, load in zip(f.driving, carried, strict=True)]
     solution = forward_dynamics(f.short, f.dag, f.arms, total, f.armatures or {})
     first, size = f.tree.layout.mechanical, len(f.v) - f.tree.layout.mechanical
     rows: list[list[Scalar]] = [[0] * size for _ in range(size)]
@@ -136,15 +136,19 @@ def _articulated(f: Functions) -> Program:
         [*solution.pivots[:first], *beside.pivots],
     )
     bounds: list[Scalar] = [0] * first
-    bounds += [SINGULAR * rows[k][k] if f.symmetric else 0 for k in range(size)]
+    bounds += [_bound(pivot, rows[k][k]) for k, pivot in enumerate(beside.pivots)]
     return _solved(f, whole, bounds, ())
 
 
 def _factored(f: Functions) -> Program:
-    """Call `equations` for M and h, then M = L^T D L in straight lines."""
+    """Call `equations` for M and h, then M = L^T D L in straight lines.
+
+    Where h and Q cannot be added without losing digits, only M is called for.
+    """
     size = len(f.v)
     f.dag.label = "right-hand side Q - h"
-    right = [effort - f.dag.symbol("h", i) for i, effort in enumerate(f.efforts)]
+    held = [f.dag.symbol("h", i) for i in range(size)] if f.affine else f.held
+    right = [effort - h for effort, h in zip(f.driving, held, strict=True)]
     f.dag.label = "M = L^T D L from the leaves to the root, then back"
     rows = [
         [f.dag.symbol("M", i * size + j) if used else 0 for j, used in enumerate(row)]
@@ -152,9 +156,16 @@ def _factored(f: Functions) -> Program:
     ]
     solution = solve(rows, right, f.tree.outward, symmetric=f.symmetric)
     local = (Argument("M", size * size, "mass matrix"), Argument("h", size, "bias vector"))
-    names = tuple(argument.name for argument in _equations(f).arguments)
-    bounds = [SINGULAR * rows[i][i] if f.symmetric else 0 for i in range(size)]
-    return _solved(f, solution, bounds, (Call("equations", names, local),))
+    called = _equations(f) if f.affine else _mass_matrix(f)
+    names = tuple(argument.name for argument in called.arguments)
+    bounds = [_bound(pivot, rows[i][i]) for i, pivot in enumerate(solution.pivots)]
+    call = Call(called.name, names, local[: len(called.results)])
+    return _solved(f, solution, bounds, (call,))
+
+
+def _bound(pivot: Scalar, entry: Scalar) -> Scalar:
+    """What a pivot must exceed: rounding of what it was made of, or zero if it was not made of anything."""
+    return 0 if pivot is entry else SINGULAR * entry
 
 
 def _factored_cost(f: Functions) -> int:
@@ -186,6 +197,7 @@ def _solved(
     result = Result("a", (len(accelerations),), accelerations, ARGUMENTS["a"])
     about = "Forward dynamics a = M(q)^-1 (Q(u) - h(q, v))."
     given = ("q", "v", "u")
+    checks += network_programs.checks(f)
     return f.program("forward_dynamics", about, given, (result,), tuple(checks), calls, status=True)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from linegraph import network_programs, orthogonality
 from linegraph.closure import Chords, equations
+from linegraph.exchange import ALL, NONE
 from linegraph.expression import Dag
 from linegraph.inverse_scheme import InverseScheme
 from linegraph.loads import Applied, applied, efforts
@@ -113,11 +114,44 @@ class Functions:
         """Elements and loads that inputs drive: part of Q."""
         return self._applied(driven=True)
 
-    def _applied(self, *, driven: bool) -> Applied:
+    def _applied(self, *, driven: bool, network: str | None = None) -> Applied:
         state = (tuple(self.q), tuple(self.v))
         return applied(
-            self.model, self.short, self.dag, self.values, self.arms, *state, driven=driven
+            self.model,
+            self.short,
+            self.dag,
+            self.values,
+            self.arms,
+            *state,
+            driven=driven,
+            network=network,
         )
+
+    @cached_property
+    def affine(self) -> bool:
+        """Whether h and Q can be added without losing digits: what inputs drive is in proportion to them."""
+        return self.tree.network is None or self.tree.network.affine
+
+    @cached_property
+    def carried(self) -> Applied:
+        """What acts at v̇ = 0, all of networks with it where h and Q cannot be added."""
+        return self.passive if self.affine else self._applied(driven=False, network=ALL)
+
+    @cached_property
+    def driving(self) -> list[Scalar]:
+        """What acts beside that: efforts and what inputs drive."""
+        if self.affine:
+            return self.efforts
+        active = self._applied(driven=True, network=NONE)
+        forces = orthogonality.generalised_forces(self.short, self.dag, self.arms, active)
+        return efforts(self.short, self.dag, self.chords, forces)
+
+    @cached_property
+    def held(self) -> list[Scalar]:
+        """What v̇ = 0 takes of `carried`: h, where Q can be added to it."""
+        if self.affine:
+            return list(self.bias.entries)
+        return orthogonality.inverse_dynamics(self.short, self.dag, self.arms, applied=self.carried)
 
     @cached_property
     def arms(self) -> list[orthogonality.Arm]:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class CoupledInductors(Component):
     """Inductors that share their flux: ``X = d/dt (inductance Y)`` with a symmetric matrix.
 
-    Its edges are "1", "2", ...
+    Its edges are "winding1", "winding2", ...
 
     Attributes:
         windings: the vertices of each, (tail, head).
@@ -37,7 +37,7 @@ class CoupledInductors(Component):
     def ports(self) -> tuple[Port, ...]:
         """One for each winding."""
         return tuple(
-            Port(str(k + 1), ELECTRICAL.name, ends) for k, ends in enumerate(self.windings)
+            Port(f"winding{k + 1}", ELECTRICAL.name, ends) for k, ends in enumerate(self.windings)
         )
 
     def kept(self) -> tuple[str, ...]:

@@ -19,7 +19,8 @@ class SynchronousMachine(Component):
     """Windings on a stator and a rotor at angle x: ``W' = i^T inductance i / 2 + i^T flux``.
 
     ``X = resistance i + d/dt (inductance i + flux)``, and it drives with ``∂W'/∂x``. Two phases, three, any
-    number, with a field winding or with magnets. Its edges are "1", "2", ... and "mechanical".
+    number, with a field winding or with magnets. Its edges are
+    "winding1", "winding2", ... and "mechanical".
 
     Attributes:
         windings: the vertices of each, (tail, head).
@@ -48,7 +49,9 @@ class SynchronousMachine(Component):
 
     def ports(self) -> tuple[Port, ...]:
         """One for each winding, and the rotor."""
-        phases = (Port(str(k + 1), ELECTRICAL.name, ends) for k, ends in enumerate(self.windings))
+        phases = (
+            Port(f"winding{k + 1}", ELECTRICAL.name, ends) for k, ends in enumerate(self.windings)
+        )
         rotor = _Rotor(self.name, ("", ""), joint=self.joint, shaft=self.shaft)
         return (*phases, rotor.mechanical())
 

@@ -72,6 +72,10 @@ class _Derivation:
 
     def network(self) -> Network:
         """All of it."""
+        for own in self._laws.own:
+            rate = self._put(own.rate)
+            if not any(kind == DUAL for kind, _ in self._calculus.support(rate)):
+                self._rates.known[own.key] = rate
         duals = self._duals()
         complete = substitution(self._dag, duals)
         variables = {
@@ -83,7 +87,7 @@ class _Derivation:
             x, _ = variables[store.edge]
             own = self._rates.of(self._put(store.charge)) + complete(self._put(store.rest))
             variables[store.edge] = (x, own)
-        reduction = Reduction(self._rates, self._calculus, self._states)
+        reduction = Reduction(self._rates, self._calculus, self._states, self._owners())
         gone = reduction.reduce(rows, variables)
         later = reduction.later
         states = tuple(s for k, s in enumerate(self._states) if k not in gone)
@@ -204,6 +208,12 @@ class _Derivation:
             for own in self._laws.own
         ]
         return [*rows, *own]
+
+    def _owners(self) -> list[int | None]:
+        """Of each row the state whose store it is of; None where that depends on others."""
+        determined = {store.edge for store in self._selection.determined}
+        keys = [store.key for store in self._laws.stores if store.edge not in determined]
+        return [self._place.get(key) for key in (*keys, *(own.key for own in self._laws.own))]
 
     def _dual(self, store: Store) -> Scalar:
         return self._dag.symbol(*store.dual)

@@ -103,7 +103,7 @@ def laws_of(model: Model, branches: Sequence[Branch], projections: Sequence[Proj
     dag = Dag()
     laws = Laws(dag, Calculus(dag))
     names = _Names(model, branches, dag)
-    ways = _ways(projections)
+    ways = _ways(projections, {branch.name for branch in branches if branch.kept == ACROSS})
     by_component: dict[str, list[Branch]] = {}
     for branch in branches:
         by_component.setdefault(branch.component.name, []).append(branch)
@@ -135,7 +135,7 @@ def _evaluate(component: Component, at: At, laws: Laws) -> None:
         key_of((at.X, at.Y)[b.kept != ACROSS][k]) for k, b in enumerate(at.branches) if b.kept
     }
     stored: Scalar = 0
-    quadratic = True
+    quadratic = substitute(work, laws.dag, dict.fromkeys(kept_keys, 0)) == 0
     for k, branch in enumerate(at.branches):
         zero = zeros[k] + pushed if _mechanical(component, k) else zeros[k]
         if branch.kept == STATIC:
@@ -252,11 +252,14 @@ def _across(dag: Dag, branch: Branch) -> Scalar:
     return dag.symbol("w" if branch.port.spatial else "X", branch.name)
 
 
-def _ways(projections: Sequence[Projection]) -> dict[tuple[str, str], list[tuple[str, int]]]:
-    """From each vertex to ground along some tree: edges with +1 where X counts from the vertex's side."""
+def _ways(
+    projections: Sequence[Projection], kept: set[str]
+) -> dict[tuple[str, str], list[tuple[str, int]]]:
+    """From each vertex to ground: edges with +1 where X counts from the vertex's side, rather `kept` ones."""
     found: dict[tuple[str, str], list[tuple[str, int]]] = {}
     for projection in projections:
-        topology = choose_forest(projection, roots=("ground",))
+        weights = {edge.name: float(edge.name not in kept) for edge in projection.edges}
+        topology = choose_forest(projection, weights, ("ground",))
         found |= {(projection.domain, root): [] for root in topology.roots}
         for step in topology.walk:
             sign = -1 if step.forward else 1

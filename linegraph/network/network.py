@@ -11,6 +11,7 @@ from linegraph.network.static import LOOP
 from linegraph.residues import Residues
 
 if TYPE_CHECKING:
+    from linegraph.components.base import Component
     from linegraph.differentiation import Symbol
     from linegraph.expression import Dag
     from linegraph.network.edges import Branch
@@ -90,6 +91,16 @@ class Network:
             for (i, j), entry in self.mass.items()
         )
 
+    def owner(self, state: State) -> Component:
+        """The component that a state belongs to."""
+        place = str(state.key[1])
+        names = (place, place.rpartition(".")[0])
+        return next(
+            branch.component
+            for branch in self.branches
+            if branch.name == names[0] or branch.component.name == names[1]
+        )
+
     @cached_property
     def places(self) -> dict[Symbol, int]:
         """Where each state stands among them."""
@@ -116,6 +127,16 @@ class Network:
         pairs = zip(self.force, resting, strict=True)
         driven = tuple(self._added(row, rest) for row, rest in pairs)
         return {"resting": resting, "driven": driven, "all": self.force}
+
+    @cached_property
+    def affine(self) -> bool:
+        """Whether inputs add to f in proportion: what they drive is then no difference of two values."""
+        calculus = self.laws.calculus
+        return not any(
+            symbol[0] in INPUTS and any(s[0] in INPUTS for s in calculus.support(slope))
+            for row in self.force
+            for symbol, slope in calculus.gradient(row).items()
+        )
 
     def _added(self, row: Scalar, resting: Scalar) -> Scalar:
         """What inputs add to a row: their slopes times them, where these are free of inputs."""

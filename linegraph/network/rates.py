@@ -27,6 +27,7 @@ class Rates:
 
     Attributes:
         replaced: states that constraints have fixed, and their values.
+        known: rates that static laws give: they are written as such, so that 𝓜 stays symmetric.
     """
 
     def __init__(
@@ -36,6 +37,7 @@ class Rates:
         self.who = who
         self.places = {state.key: k for k, state in enumerate(states)}
         self.replaced: dict[Symbol, Scalar] = {}
+        self.known: dict[Symbol, Scalar] = {}
         self._calculus, self._dag = calculus, calculus.dag
         self._dependent = tuple(dependent)
 
@@ -50,6 +52,8 @@ class Rates:
         kind, place = symbol
         if symbol in self.replaced:
             return self.of(self.replaced[symbol])
+        if symbol in self.known:
+            return self.known[symbol]
         if symbol in self.places:
             return self._dag.symbol(RATE, self.places[symbol])
         if kind == "t":

@@ -23,8 +23,15 @@ if TYPE_CHECKING:
 class Reduction:
     """Rows ``𝓜 ż = f`` of which some may follow from others."""
 
-    def __init__(self, rates: Rates, calculus: Calculus, states: Sequence[State]) -> None:
-        """Nothing is fixed yet."""
+    def __init__(
+        self,
+        rates: Rates,
+        calculus: Calculus,
+        states: Sequence[State],
+        owners: Sequence[int | None],
+    ) -> None:
+        """Nothing is fixed yet; `owners` are the states that rows stand for."""
+        self._owners = list(owners)
         self._rates, self._states = rates, states
         self._calculus, self._dag = calculus, calculus.dag
         self._residues = Residues()
@@ -73,14 +80,18 @@ class Reduction:
     def _independent(self, rows: Sequence[Scalar], gone: set[int]) -> list[Scalar]:
         """Drop the one row that follows from the others and what has been fixed."""
         span, kept, dropped = Span(), [], False
+        owners, self._owners = self._owners, []
         for k, row in enumerate(rows):
             entries = self._rate_row(row, gone).entries
             made = span.add({s: self._residues(e) for s, e in entries.items()}, k)
             if made is None or dropped:
                 kept.append(row)
+                self._owners.append(owners[k])
             else:
                 dropped = True
-        return kept if dropped else list(rows[:-1])
+        if not dropped:
+            self._owners.pop()
+        return kept if dropped else kept[:-1]
 
     def _fixed(self, rest: Scalar, gone: set[int]) -> tuple[int, Scalar]:
         """The state that a constraint fixes, and its value.
@@ -130,7 +141,11 @@ class Reduction:
                     return True
             return False
 
+        for row, owner in enumerate(self._owners):
+            if owner in entries[row] and owner in columns and owner not in matched:
+                matched[owner] = row
         for row in range(len(rows)):
-            augment(row, set())
+            if row not in matched.values():
+                augment(row, set())
         if len(matched) == len(rows):
             rows[:] = [rows[matched[column]] for column in columns]
