@@ -127,6 +127,8 @@ class Symbolic:
         Raises:
             ModelError: it is not linear.
         """
+        if self.tree.network is not None:
+            self.tree.network.require_linear()
         steep = {u: sympy.Symbol(f"{u}_rate") for u in self.u}
         slopes = {u: rate for u, rate in steep.items() if rate in set(self.u)}
         inputs = [u for u in self.u if u not in slopes.values()]

@@ -59,10 +59,8 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("observation", "paper_inverse"),
     ("symbols",),
     ("derive",),
-    (
-        *("closed_programs", "edge_programs", "network_programs"),
-        *("interpretation", "modelfile", "urdf"),
-    ),
+    ("network_programs",),
+    ("closed_programs", "edge_programs", "interpretation", "modelfile", "urdf"),
     ("shared",),
     ("programs",),
     ("codegen", "trees"),

@@ -1,4 +1,4 @@
-"""Published networks, symbol for symbol: StateMint's test systems, Rowell and Wormley's problems, and more."""
+"""Published networks, symbol for symbol: StateMint's tests, Rowell and Wormley's problems, and more."""
 
 from __future__ import annotations
 

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from linegraph.differentiation import substitution
+from linegraph.errors import ModelError
 from linegraph.network.static import LOOP
 from linegraph.residues import Residues
 
@@ -137,6 +138,33 @@ class Network:
             for row in self.force
             for symbol, slope in calculus.gradient(row).items()
         )
+
+    def require_linear(self) -> None:
+        """Refuse a network whose rates are not linear in its states and inputs.
+
+        Raises:
+            ModelError: names a state whose rate is not.
+        """
+        calculus = self.laws.calculus
+        variables = {*self.places} | {
+            s for row in self.force for s in calculus.support(row) if s[0] in (*INPUTS, "x", "w")
+        }
+        for (i, _), entry in self.mass.items():
+            if calculus.support(entry) & variables:
+                raise self._curved(i)
+        for i, row in enumerate(self.force):
+            slopes = calculus.gradient(row)
+            if any(symbol[0] == LOOP for symbol in slopes) or any(
+                calculus.support(slope) & variables
+                for symbol, slope in slopes.items()
+                if symbol in variables
+            ):
+                raise self._curved(i)
+
+    def _curved(self, row: int) -> ModelError:
+        name = self.states[row].quantity.name if row < len(self.states) else "an edge in mechanics"
+        problem = "its rate is not linear in states and inputs: there is no state space"
+        return ModelError(f'"{name}"', problem)
 
     def _added(self, row: Scalar, resting: Scalar) -> Scalar:
         """What inputs add to a row: their slopes times them, where these are free of inputs."""

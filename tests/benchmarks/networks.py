@@ -2,9 +2,9 @@
 
     python tests/benchmarks/networks.py
 
-The arm is `examples/arm_with_drives`; the bare arm is the same without its networks, an effort in each joint.
-Both are read and rendered in C and Python in one process, interleaved; shown are the best of several runs. Then
-how the cost of a ladder of R, L and C grows with its length.
+The arm is `examples/arm_with_drives`; the bare arm is the same without its networks, an effort in each
+joint. Both are read and rendered in C and Python in one process, interleaved; shown are the best of several
+runs. Then how the cost of a ladder of R, L and C grows with its length.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def seconds(make: object) -> float:
 
 
 def ladder(n: int) -> Model:
-    """n stages of R and L along, C across."""
+    """So many stages of R and L along, C across."""
     model = Model("ladder")
     model.input("u", "V")
     model.voltage_source("s", ("n0", "ground"), voltage="u")
