@@ -80,8 +80,8 @@ def _about_model(command: Callable[..., None]) -> Callable[..., None]:
 def main() -> None:
     """Equations of motion from linear (terminal) graphs, emitted as C and Python.
 
-    linegraph reads a mechanism (a model file) or a robot (a URDF), unites its terminal graphs into the
-    system graph, picks a tree, derives
+    linegraph reads a system (a model file: bodies and joints, circuits, hydraulics, heat, in any mixture) or
+    a robot (a URDF), unites its terminal graphs into the system graph, picks a tree, derives
 
         M(q) v' + h(q, v) = Q(u),    q' = N(q) v
 
@@ -152,8 +152,10 @@ def emit(
       inverse_dynamics   tau = M a + h
       forward_dynamics   a = M^-1 (Q(u) - h)
       coordinate_rates   q' = N(q) v
-      energy             kinetic and potential
-      across, reactions  every variable of every joint and element, by the inverse scheme
+      energy             kinetic and potential, and what networks store
+      rhs                x' = f(x, u, t) of the whole state x = (q, v), for integrators
+      across, reactions  every variable of every joint, element and component, by the inverse scheme
+      outputs            what the model asks for by name
     and with closed loops or constraints
       constraints, constraint_jacobian, constraint_rates, constraint_bias, project,
       complete, reduction, reduced_equations: the mechanism in its independent coordinates

@@ -300,11 +300,13 @@ class Numeric:
         found = relations(self.model, self.tree, self.algebra, self.parameters, state, rates)
         return Chords(self.tree, self.algebra, self._arms(q, v), self.parameters, found)
 
-    def energy(self, q: Sequence[float], v: Sequence[float]) -> tuple[float, float]:
-        """Kinetic and potential energy, that of springs included."""
+    def energy(self, q: Sequence[float], v: Sequence[float]) -> tuple[float, ...]:
+        """Kinetic and potential energy, that of springs included; then what networks store, if any."""
         kinetic, potential = orthogonality.energy(self.tree, self.algebra, self._arms(q, v))
         acting = self.applied(q, v, driven=False)
-        return kinetic, potential + (acting.potential if acting else 0)
+        exchange = self.exchange(q, v)
+        stored = () if exchange is None else (float(exchange.energy()),)
+        return kinetic, potential + (acting.potential if acting else 0), *stored
 
     def applied(self, q: Sequence[float], v: Sequence[float], *, driven: bool) -> Applied | None:
         """What elements and loads do that depend on inputs (`driven`), or those that do not."""

@@ -224,7 +224,8 @@ def _require_known(model: Model) -> None:
     for name in model.choices.tree:
         if name not in edges:
             raise ModelError(
-                f'branch "{name}"', f"is no joint or inertia edge; {nearest(name, edges)}"
+                f'branch "{name}"',
+                f"is no joint, inertia edge or component; {nearest(name, edges)}",
             )
     for name in model.choices.of_body:
         if name not in model.bodies:

@@ -233,10 +233,13 @@ class Symbolic:
         return paper_matrices(self.tree, self.algebra, list(self.q), list(self.v))
 
     @cached_property
-    def energy(self) -> tuple[Expr, Expr]:
-        """Kinetic and potential energy, that of springs included."""
+    def energy(self) -> tuple[Expr, ...]:
+        """Kinetic and potential energy, that of springs included; then what networks store, if any."""
         kinetic, potential = orthogonality.energy(self.tree, self.algebra, self._arms)
-        return simplified(kinetic), simplified(potential + self._applied.potential)
+        found = [kinetic, potential + self._applied.potential]
+        if self._exchange is not None:
+            found.append(self._exchange.energy())
+        return tuple(simplified(energy) for energy in found)
 
     @cached_property
     def printed_matrices(self) -> PrintedMatrices:

@@ -28,6 +28,7 @@ class HeatCapacity(AcrossStore):
     capacity: Any = None
     kind = "heat_capacity"
     domain_name = THERMAL.name
+    grounded = True
     required = ("capacity",)
 
     def constant(self, at: Terminals) -> Scalar:

@@ -28,6 +28,7 @@ class Inertia(AcrossStore):
     inertia: Any = None
     kind = "inertia"
     domain_name = ROTATION_1D.name
+    grounded = True
     required = ("inertia",)
 
     def constant(self, at: Terminals) -> Scalar:

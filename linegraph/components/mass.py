@@ -28,6 +28,7 @@ class Mass(AcrossStore):
     mass: Any = None
     kind = "mass"
     domain_name = TRANSLATION_1D.name
+    grounded = True
     required = ("mass",)
 
     def constant(self, at: Terminals) -> Scalar:

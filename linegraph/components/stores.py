@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from linegraph.components.base import ACROSS, STATIC, THROUGH, OnePort, OwnState
 from linegraph.domains import DOMAINS
+from linegraph.errors import ModelError
+
+GROUND = "ground"
 
 if TYPE_CHECKING:
     from linegraph.components.base import Own, Terminals
@@ -22,6 +25,8 @@ class Store(OnePort):
 
     keeps: ClassVar[str]
     charge_field: ClassVar[str] = ""
+    grounded: ClassVar[bool] = False
+    """Whether one of its ends is ground: what it keeps is measured from there."""
 
     def constant(self, at: Terminals) -> Scalar:
         """The charge for one of what is kept."""
@@ -44,6 +49,20 @@ class Store(OnePort):
     def charges(self, at: Terminals) -> tuple[Scalar, ...] | None:
         """The charge where it is given as such."""
         return None if self._charge is None else (self._law(at, self._charge),)
+
+    def require_fields(self) -> None:
+        """Refuse also a store that is measured from ground and does not end there."""
+        super().require_fields()
+        if self.grounded and GROUND not in self.between:
+            problem = (
+                f"one of its ends must be {GROUND}, from where its {self._measured} is measured; it has "
+                f"{' and '.join(self.between)}"
+            )
+            raise ModelError(f'{self.kind} "{self.name}"', problem)
+
+    @property
+    def _measured(self) -> str:
+        return DOMAINS[self.domain_name].across.name
 
     @property
     def _charge(self) -> Any:

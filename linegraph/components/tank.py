@@ -32,6 +32,7 @@ class Tank(AcrossStore):
     gravity: Any = 9.81
     kind = "tank"
     domain_name = HYDRAULIC.name
+    grounded = True
     required = ("area",)
 
     def constant(self, at: Terminals) -> Scalar:

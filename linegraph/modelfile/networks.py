@@ -151,14 +151,14 @@ def component_table(name: str, abouts: Callable[[type], dict[str, str]]) -> Tabl
     entries = {
         f.name: Field(
             _kind_of(kind, f.name, str(f.type)),
-            told.get(f.name, ""),
+            told.get(f.name, "").rstrip("."),
             f.name in required and (f.default is MISSING or f.name in kind.required),
         )
         for f in fields(kind)
         if f.name != "name"
     }
     if name == "element":
-        entries["domain"] = Field(Domain(), told["domain"], True)
+        entries["domain"] = Field(Domain(), told["domain"].rstrip("."), True)
     groups = kind.needs
     places = tuple(key for key in ("joint", "points", "shaft") if key in entries)
     if places:

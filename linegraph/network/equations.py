@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from linegraph.differentiation import Replay, substitution
 from linegraph.domains import DOMAINS
+from linegraph.errors import ModelError
 from linegraph.network.edges import dangling, edges_of, projections
 from linegraph.network.laws import laws_of
 from linegraph.network.network import RATE, SHAFT_RATE, Network, State
@@ -20,6 +21,8 @@ from linegraph.network.reduction import Reduction
 from linegraph.network.selection import select
 from linegraph.network.static import DUAL, Solver, substituting
 from linegraph.program import Quantity
+
+INTERFACES = ("rotational_interface", "translational_interface")
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -43,12 +46,30 @@ def network_of(model: Model) -> Network | None:
     if not model.components:
         return None
     branches = edges_of(model.components)
+    _require_places(model, branches)
     graphs = projections(branches)
     laws = laws_of(model, branches, graphs)
     wanted = [name for name in model.choices.tree if any(b.name == name for b in branches)]
     selection = select(branches, graphs, laws, wanted)
     statics = Solver(branches, laws, selection).solve()
     return _Derivation(model, branches, laws, selection, statics).network()
+
+
+def _require_places(model: Model, branches: Sequence[Branch]) -> None:
+    """Refuse edges in mechanics of the wrong kind: 1-D rotation at a joint that slides, and the like."""
+    units = {joint.name: [q.unit for q in joint.velocities()] for joint in model.joints}
+    for branch in branches:
+        component = branch.component
+        turns = getattr(component, "turns", False)
+        who = f'{component.kind} "{component.name}"'
+        if branch.port.points is not None and turns:
+            raise ModelError(who, "turns, so it has no place between points; give joint or shaft")
+        wanted = "rad/s" if turns else "m/s"
+        if component.kind in INTERFACES and units.get(branch.port.joint or "", [wanted]) != [
+            wanted
+        ]:
+            word = "turns" if turns else "slides"
+            raise ModelError(who, f'joint "{branch.port.joint}" is none of one freedom that {word}')
 
 
 class _Derivation:

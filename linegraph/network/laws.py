@@ -33,6 +33,9 @@ if TYPE_CHECKING:
     from linegraph.network.edges import Branch
     from linegraph.vector import Scalar
 
+DISSIPATIVE = ("damper", "friction")
+"""Force elements that turn all they take in into heat."""
+
 TAKEN = "taken"
 """The power that a force element turns into heat stands under this name."""
 
@@ -236,7 +239,7 @@ class At:
             return self._laws.dag.symbol("name", f"{TAKEN}({name})")
         known = [*self._laws.heat, *self._names.forces]
         raise ModelError(
-            "", f'of: there is no component or element "{name}"; {nearest(name, known)}'
+            "", f'of: there is no component, damper or friction "{name}"; {nearest(name, known)}'
         )
 
 
@@ -281,7 +284,7 @@ class _Names(Mapping[str, Any]):
                 for name in (quantity.name, f"der({quantity.name})"):
                     self._known[name] = ("name", name)
         self._edges: dict[str, Branch] = {branch.name: branch for branch in branches}
-        self.forces = {e.name for e in model.force_elements}
+        self.forces = {e.name for e in model.force_elements if e.kind in DISSIPATIVE}
 
     def with_own(self, own: Mapping[str, Scalar]) -> Mapping[str, Scalar]:
         """These names too, before all others."""

@@ -185,7 +185,7 @@ class Network:
     def rate(self, x: Scalar) -> Scalar:
         """The total derivative of what depends on states, displacements and the time."""
         total: Scalar = 0
-        follows = {"x": "w", "w": SHAFT_RATE}
+        follows = {"x": "w", "w": SHAFT_RATE, "u": "du", "du": "ddu"}
         for (kind, place), slope in self.laws.calculus.gradient(x).items():
             rate: Scalar = 1
             if (kind, place) in self.places:
@@ -203,8 +203,8 @@ class Network:
     def gains(self) -> dict[str, Scalar]:
         """Of each component what it stores and turns into heat, less what it takes in: zero.
 
-        Left out are sources, stores by a charge alone, of which no energy is known, stores that inputs
-        change, and heat itself.
+        Left out are sources, stores by a charge alone, of which no energy is known, stores that the time,
+        inputs or other components change, and heat itself.
         """
         found: dict[str, Scalar] = {}
         for component in dict.fromkeys(branch.component for branch in self.branches):
@@ -212,15 +212,22 @@ class Network:
             hot = any(b.port.domain in self.heats for b in own)
             if component.source or hot or component.name in self.unknown:
                 continue
-            energy = self.energy[component.name]
-            if any(kind in INPUTS for kind, _ in self.laws.calculus.support(energy)):
+            if self._foreign(component):
                 continue
-            taken = self.rate(energy) + self.heat[component.name]
+            taken = self.rate(self.energy[component.name]) + self.heat[component.name]
             for branch in own:
                 x, y = self.variables[branch.name]
                 taken = taken - x * y
             found[component.name] = taken
         return found
+
+    def _foreign(self, component: Component) -> bool:
+        """Whether what a component stores depends on more than itself."""
+        own = {branch.name for branch in self.branches if branch.component is component}
+        return any(
+            kind != "p" and place not in own and not str(place).startswith(f"{component.name}.")
+            for kind, place in self.laws.calculus.support(self.laws.energy[component.name])
+        )
 
     @cached_property
     def unknown(self) -> frozenset[str]:

@@ -138,7 +138,9 @@ class _Judge:
                 "resistance in parallel"
             )
         else:
-            problem = f"the laws of {shown} contradict or repeat each other"
+            amplifier = any(static.component.kind == "opamp" for static in statics)
+            hint = "; an op-amp may lack its feedback" * amplifier
+            problem = f"the laws of {shown} contradict or repeat each other{hint}"
         return ModelError(who, problem)
 
     def _own(self, static: Static) -> list[Symbol]:
