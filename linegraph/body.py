@@ -16,6 +16,8 @@ from linegraph.rotation import IDENTITY_MATRIX, Inertia, about, from_rpy
 from linegraph.vector import ZERO, Matrix, Vector
 
 GROUND = "ground"
+COMMON_NAMES = ("gnd", "0", "earth", "reference", "vss", "world", "base", "datum")
+"""What others call it."""
 MASS_CENTER = "mass_center"
 
 SMALLEST = 1e-150

@@ -134,8 +134,9 @@ class Derivation:
         given = all(p.value is not None for p in self.model.parameters.values())
         if network is None or not network.states or not given:
             return
-        numeric = self.numeric(t=0.37)
         draw = random.Random(0)
+        u = [draw.uniform(0.5, 1) for _ in self.structure.inputs]
+        numeric = self.numeric(t=0.37, u=u)
         q = [draw.uniform(-1, 1) for _ in numeric.tree.positions]
         numeric.tree.normalise(q)
         v = [draw.uniform(-1, 1) for _ in numeric.tree.velocities]

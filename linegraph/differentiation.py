@@ -95,13 +95,14 @@ class Calculus:
         elif node.op == DIV:
             pairs = [(a, lambda: 1 / b), (b, lambda: -node / b)]
         elif b is None:
-            pairs = [(a, lambda: self._slope(node))]
+            pairs = [(a, lambda: self.slope(node))]
         else:
             first, second = self._slopes(node)
             pairs = [(a, lambda: first), (b, lambda: second)]
         return [partial() for operand, partial in pairs if isinstance(operand, Node)]
 
-    def _slope(self, node: Node) -> Scalar:
+    def slope(self, node: Node) -> Scalar:
+        """The derivative of a function of one argument."""
         if node.op == "abs":
             return self.dag.function("sign", node.a)
         if node.op == "sign":
@@ -120,6 +121,56 @@ class Calculus:
         side = self.dag.function("sign", a - b)
         share = (1 + side) / 2 if node.op == "max" else (1 - side) / 2
         return share, 1 - share
+
+
+class Sizes:
+    """The size of the terms that scalars are sums of: what rounding errors are in proportion to.
+
+    Example:
+        >>> dag = Dag()
+        >>> x, y = dag.symbol("x"), dag.symbol("y")
+        >>> difference = Sizes(Calculus(dag))(x - y)
+        >>> from linegraph.algebra import Floats
+        >>> Replay(Floats(), {("x", None): 3.0, ("y", None): -3.0}.__getitem__)(difference)
+        6.0
+    """
+
+    def __init__(self, calculus: Calculus) -> None:
+        """Nothing is known yet."""
+        self._calculus, self._dag = calculus, calculus.dag
+        self._known: dict[int, Scalar] = {}
+
+    def __call__(self, x: Scalar) -> Scalar:
+        """Sums of absolute values in place of sums."""
+        if not isinstance(x, Node):
+            return abs(x)
+        for node in _below(x, self._known):
+            self._known[node.index] = self._of(node)
+        return self._known[x.index]
+
+    def _of(self, node: Node) -> Scalar:
+        if node.op == SYMBOL:
+            return self._dag.function("abs", node)
+        a, b = (self._operand(part) for part in (node.a, node.b))
+        if node.op == NEG:
+            return a
+        if node.op in (ADD, SUB):
+            return a + b
+        if node.op == MUL:
+            return a * b
+        if node.op == DIV:
+            return a / self._dag.function("abs", node.b)
+        if node.b is not None:
+            return a + b
+        return (
+            self._dag.function("abs", node)
+            + self._dag.function("abs", self._calculus.slope(node)) * a
+        )
+
+    def _operand(self, x: Any) -> Scalar:
+        if x is None:
+            return 0
+        return self._known[x.index] if isinstance(x, Node) else abs(x)
 
 
 def operands(node: Node) -> list[Node]:

@@ -159,6 +159,8 @@ def exponents(symbol: str) -> Unit:
             name, _, power = factor.partition("^")
             if name not in UNITS:
                 raise ValueError(f'"{name}" is no unit known here; known: {", ".join(UNITS)}')
+            if power and not power.lstrip("-").isdigit():
+                raise ValueError(f'"{factor}" is no power of a unit; write m^3')
             times = int(power) if power else 1
             total = [t + sign * times * e for t, e in zip(total, UNITS[name], strict=True)]
     return (total[0], total[1], total[2], total[3], total[4])

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from linegraph.formulation import Formulation
     from linegraph.joints import Joint
     from linegraph.model import Model
+    from linegraph.network import Network
     from linegraph.planarity import Angle
     from linegraph.vector import Scalar
 
@@ -115,10 +116,10 @@ def layout_of(
         layout.places[body] = _placed(layout, floating(body))
     layout.mechanical = len(layout.velocities)
     if formulation.network is not None:
-        layout.velocities += [state.quantity for state in formulation.network.states]
+        _add_states(layout, formulation.network)
     for declared in model.inputs:
         layout.named_inputs[declared.name] = _input(layout, algebra, _quantity(declared))
-        _add_rates(layout, algebra, declared, formulation)
+        _add_rates(layout, model, algebra, declared, formulation)
     for quantities in (layout.positions, layout.velocities):
         _require_unique(quantities)
     values = _time(model, algebra, parameters)
@@ -136,7 +137,22 @@ def layout_of(
     return layout
 
 
-def _add_rates(layout: Layout, algebra: Algebra, declared: Input, formulation: Formulation) -> None:
+def _add_states(layout: Layout, network: Network) -> None:
+    """New velocities for the states of networks."""
+    taken = {quantity.name for quantity in (*layout.positions, *layout.velocities)}
+    for state in network.states:
+        name = state.quantity.name
+        if name in taken:
+            owner = network.owner(state)
+            problem = f'its state "{name}" has the name of another coordinate or state; rename one'
+            raise ModelError(f'{owner.kind} "{owner.name}"', problem)
+        taken.add(name)
+        layout.velocities.append(state.quantity)
+
+
+def _add_rates(
+    layout: Layout, model: Model, algebra: Algebra, declared: Input, formulation: Formulation
+) -> None:
     """New inputs for the derivatives of a named one, as far as a network needs them."""
     name, unit = declared.name, declared.unit or "1"
     layout.input_rates[("u", name)] = layout.named_inputs[name]
@@ -144,6 +160,9 @@ def _add_rates(layout: Layout, algebra: Algebra, declared: Input, formulation: F
     rate = Quantity(f"{name}_rate", f"{unit}/s", f"first derivative of {name}")
     second = Quantity(f"{name}_acceleration", f"{unit}/s^2", f"second derivative of {name}")
     for kind, quantity in (("du", rate), ("ddu", second))[:order]:
+        if any(other.name == quantity.name for other in model.inputs):
+            problem = f"the derivative of {name} is needed under this name; rename the input"
+            raise ModelError(f'input "{quantity.name}"', problem)
         layout.input_rates[(kind, name)] = _input(layout, algebra, quantity)
 
 

@@ -151,6 +151,9 @@ class Acting:
                 if isinstance(element, NetworkForce) and error.thing:
                     raise  # it names the component
                 raise ModelError(f'{element.kind} "{element.name}"', error.problem) from None
+            except ZeroDivisionError:
+                problem = "division by zero: a value that is divided by is zero"
+                raise ModelError(f'{element.kind} "{element.name}"', problem) from None
         if self.exchange is not None:
             for k, state in enumerate(self.exchange.network.states):
                 set_label(self._algebra, f"network, {state.quantity.name}")

@@ -256,7 +256,7 @@ class Model(Words):
             ModelError: the name is taken or the axis has no length.
         """
         who = f'joint "{joint.name}"'
-        if joint.name in self._joints:
+        if joint.name in self._joints or joint.name in self._components:
             raise ModelError(who, "the name is taken; names of joints are unique")
         joint = replace(joint, axis=unit(vector(joint.axis, who), who))
         joint.require_start()

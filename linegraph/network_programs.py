@@ -36,10 +36,12 @@ def algebraic_loop(f: Functions) -> tuple[Program | Routine, ...]:
     f.dag.label = "network, algebraic loop"
     residual = tuple(f.exchange.still(r) for r in network.loop)
     slopes = tuple(f.exchange.still(e) for row in network.loop_jacobian for e in row)
+    terms = tuple(f.exchange.still(e) for e in network.loop_sizes)
     size = len(residual)
     results = (
         Result("r", (size,), residual, "what is zero at the solution"),
         Result("K", (size, size), slopes, "its derivative by the unknowns"),
+        Result("s", (size,), terms, "size of its terms, to judge what is rounding"),
     )
     equations = f.program(
         "loop_equations",

@@ -213,6 +213,7 @@ PLACES = (
     "shaft",
     "domain",
     "domains",
+    "of",
     "keeps",
 )
 

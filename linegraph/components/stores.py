@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from linegraph.components.base import ACROSS, STATIC, THROUGH, OnePort, OwnState
+from linegraph.body import COMMON_NAMES, GROUND
+from linegraph.components.base import ACROSS, STATIC, THROUGH, OnePort, Own, OwnState
 from linegraph.domains import DOMAINS
 from linegraph.errors import ModelError
 
-GROUND = "ground"
-
 if TYPE_CHECKING:
-    from linegraph.components.base import Own, Terminals
+    from linegraph.components.base import Terminals
     from linegraph.vector import Scalar
 
 
@@ -54,9 +53,11 @@ class Store(OnePort):
         """Refuse also a store that is measured from ground and does not end there."""
         super().require_fields()
         if self.grounded and GROUND not in self.between:
+            meant = next((v for v in self.between if v.lower() in COMMON_NAMES), None)
+            hint = "" if meant is None else f'; is "{meant}" meant to be "{GROUND}"?'
             problem = (
                 f"one of its ends must be {GROUND}, from where its {self._measured} is measured; it has "
-                f"{' and '.join(self.between)}"
+                f"{' and '.join(self.between)}{hint}"
             )
             raise ModelError(f'{self.kind} "{self.name}"', problem)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linegraph.body import GROUND
+from linegraph.body import COMMON_NAMES, GROUND
 from linegraph.components.base import STATIC, Component, Port
 from linegraph.errors import ModelError
 from linegraph.graph import Edge, Projection, unite
@@ -14,9 +14,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from linegraph.components.base import Pair
-
-COMMON_NAMES = ("gnd", "0", "earth", "reference", "vss", "world", "base", "mass", "datum")
-"""What others call the reference."""
 
 
 @dataclass(frozen=True)

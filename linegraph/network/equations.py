@@ -21,6 +21,7 @@ from linegraph.network.reduction import Reduction
 from linegraph.network.selection import select
 from linegraph.network.static import DUAL, Solver, substituting
 from linegraph.program import Quantity
+from linegraph.residues import Residues
 
 INTERFACES = ("rotational_interface", "translational_interface")
 
@@ -86,8 +87,9 @@ class _Derivation:
         self._model, self._branches, self._laws = model, branches, laws
         self._selection, self._statics = selection, statics
         self._dag, self._calculus = laws.dag, laws.calculus
+        self._residues = Residues()
         self._states = self._listed()
-        self._rates = Rates(self._who, self._calculus, self._states, selection.dependent)
+        self._rates = Rates(self._first, self._calculus, self._states, selection.dependent)
         self._place = self._rates.places
         self._put = substituting(laws, statics.kirchhoff, statics.values)
 
@@ -117,6 +119,7 @@ class _Derivation:
         renumbered = self._renumbered(states)
         rows = renumbered.all(rows)
         variables = {name: (renumbered(x), renumbered(y)) for name, (x, y) in variables.items()}
+        rates = self._input_rates([*rows, *(x for pair in variables.values() for x in pair)])
         mass, force = self._split(rows, len(states), [port.name for port in ports])
 
         def put(given: Mapping[str, Scalar]) -> dict[str, Scalar]:
@@ -133,8 +136,8 @@ class _Derivation:
             tuple(later.all(self._statics.residuals)),
             tuple(later.all(self._statics.pivots)),
             self._selection.dependent,
-            self._input_rates([*rows, *(x for pair in variables.values() for x in pair)]),
-            self._remarks(),
+            rates,
+            self._remarks(rates),
             put(self._laws.energy),
             put(self._laws.heat),
             frozenset(n for n in {*self._model.domains, *DOMAINS} if not self._domain(n).power),
@@ -146,6 +149,14 @@ class _Derivation:
     @property
     def _who(self) -> str:
         return f'model "{self._model.name}"'
+
+    @property
+    def _first(self) -> str:
+        """The component of the first store that depends on others, for errors; the model if there is none."""
+        for branch in self._branches:
+            if branch.name in self._selection.dependent:
+                return f'{branch.component.kind} "{branch.component.name}"'
+        return self._who
 
     # -- states and their rates
 
@@ -255,7 +266,7 @@ class _Derivation:
         still = substitution(self._dag, dict.fromkeys(columns, 0))
         for i, row in enumerate(rows):
             for symbol, slope in self._calculus.gradient(row).items():
-                if symbol in columns:
+                if symbol in columns and self._residues(slope):
                     mass[(i, columns[symbol])] = slope
             force.append(-still(row))
         return mass, force
@@ -265,9 +276,9 @@ class _Derivation:
     def _input_rates(self, scalars: Sequence[Scalar]) -> dict[str, int]:
         found: dict[str, int] = {}
         for x in scalars:
-            for kind, place in self._calculus.support(x):
+            for (kind, place), slope in self._calculus.gradient(x).items():
                 order = {"du": 1, "ddu": 2}.get(kind, 0)
-                if order:
+                if order and self._residues(slope):
                     found[str(place)] = max(order, found.get(str(place), 0))
         declared = [quantity.name for quantity in self._model.inputs]
         return {name: found[name] for name in declared if name in found}
@@ -279,7 +290,7 @@ class _Derivation:
                 if kind == DUAL:
                     raise self._rates.too_deep(kind, place)
 
-    def _remarks(self) -> tuple[str, ...]:
+    def _remarks(self, rates: Mapping[str, int]) -> tuple[str, ...]:
         found = []
         for projection in (t.projection for t in self._selection.topologies):
             for vertex, edge in dangling(projection):
@@ -289,6 +300,11 @@ class _Derivation:
         for edge, on in self._selection.dependent.items():
             what = f"follows from {', '.join(on)}" if on else "is given by sources"
             found.append(f"{edge} stores, but is no state of its own: it {what}")
+        for name, order in rates.items():
+            more = f" and {name}_acceleration" * (order > 1)
+            found.append(
+                f"the rate of input {name} is needed: {name}_rate{more} follows it as an input"
+            )
         if self._statics.laws:
             names = ", ".join(self._statics.laws)
             found.append(f"an algebraic loop of {names} is solved by Newton's method")

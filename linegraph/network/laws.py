@@ -21,7 +21,7 @@ from linegraph.domains import DOMAINS
 from linegraph.errors import ModelError
 from linegraph.expression import Dag, Node
 from linegraph.formula import variable_of
-from linegraph.parameters import resolver, valued
+from linegraph.parameters import names_in, resolver, valued
 from linegraph.program import Quantity
 from linegraph.topology import choose_forest
 
@@ -116,13 +116,33 @@ def laws_of(model: Model, branches: Sequence[Branch], projections: Sequence[Proj
         at = At(component, by_component[component.name], laws, names, ways)
         who = f'{component.kind} "{component.name}"'
         try:
+            _require_names(component, names)
             _evaluate(component, at, laws)
         except ModelError as error:
             problem = error.problem if not error.thing else str(error)
             raise ModelError(who, problem) from None
+        except ZeroDivisionError:
+            raise ModelError(who, "division by zero: a value that is divided by is zero") from None
         except (ArithmeticError, ValueError) as error:
             raise ModelError(who, f"has no finite value ({error})") from None
     return laws
+
+
+def _require_names(component: Component, names: _Names) -> None:
+    """Refuse variables of edges that do not exist, and the state of an element that has none."""
+    stateless = component.kind == "element" and getattr(component, "rate", None) is None
+    for value in component.values():
+        for name in sorted(names_in(value)):
+            variable = variable_of(name)
+            if variable is not None and name not in names:
+                edges = [n for n in names if n.startswith(f"{variable[0]}(")]
+                known = [n.partition("(")[2].rstrip(")") for n in edges]
+                hint = nearest(variable[1], known)
+                raise ModelError("", f"there is no {variable[0]}({variable[1]}); {hint}")
+            if name == "s" and stateless and name not in names:
+                raise ModelError(
+                    "", "s is its state, and it has none: give rate, the derivative of s"
+                )
 
 
 def _evaluate(component: Component, at: At, laws: Laws) -> None:
@@ -146,6 +166,8 @@ def _evaluate(component: Component, at: At, laws: Laws) -> None:
             continue
         kept, other = (at.X, at.Y) if branch.kept == ACROSS else (at.Y, at.X)
         charge = calculus.derivative(work, key_of(kept[k])) if charges is None else charges[k]
+        if not isinstance(charge, Node) and charge == 0:
+            raise ModelError("", "stores nothing: its value is zero; leave it out")
         found = laws.spatial if branch.port.spatial else laws.stores
         found.append(Store(branch.name, key_of(kept[k]), key_of(other[k]), charge, zero))
         quadratic = quadratic and _proportional(charge, kept_keys, laws)

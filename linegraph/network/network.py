@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from linegraph.differentiation import substitution
+from linegraph.differentiation import Sizes, substitution
 from linegraph.errors import ModelError
 from linegraph.network.static import LOOP
 from linegraph.residues import Residues
@@ -114,17 +114,27 @@ class Network:
         return [[self.laws.calculus.derivative(r, (LOOP, k)) for k in size] for r in self.loop]
 
     @cached_property
+    def loop_sizes(self) -> list[Scalar]:
+        """The size of the terms of what is zero there: at a solution it is zero but for their rounding."""
+        return [Sizes(self.laws.calculus)(r) for r in self.loop]
+
+    @cached_property
     def parts(self) -> dict[str, tuple[Scalar, ...]]:
         """F with all inputs zero, what inputs add to that, and both; by row.
 
-        Where inputs decide an algebraic loop the two cannot be told apart: all of it is called resting.
+        Where inputs decide an algebraic loop, or are divided by, the two cannot be told apart: all of it is
+        called resting.
         """
         calculus, dag = self.laws.calculus, self.dag
         support = {s for row in self.loop for s in calculus.support(row)}
         inputs = {s for row in self.force for s in calculus.support(row) if s[0] in INPUTS}
         if any(symbol[0] in INPUTS for symbol in support):
             return {"resting": self.force, "driven": (0,) * len(self.force), "all": self.force}
-        resting = tuple(substitution(dag, dict.fromkeys(inputs, 0)).all(self.force))
+        try:
+            resting = tuple(substitution(dag, dict.fromkeys(inputs, 0)).all(self.force))
+        except (ArithmeticError, ModelError):
+            # an input that is divided by has no rest
+            return {"resting": self.force, "driven": (0,) * len(self.force), "all": self.force}
         pairs = zip(self.force, resting, strict=True)
         driven = tuple(self._added(row, rest) for row, rest in pairs)
         return {"resting": resting, "driven": driven, "all": self.force}

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 MOST_STEPS = 200
 MOST_HALVINGS = 40
-ENOUGH = 1e-14
-"""A step below this fraction of an unknown's size is rounding."""
+ROUNDING = 1e-13
+"""A residual below this fraction of its terms is zero."""
 
 
 def solved(network: Network, known: Callable[[Symbol], float]) -> list[float]:
@@ -33,35 +33,42 @@ def solved(network: Network, known: Callable[[Symbol], float]) -> list[float]:
     size = len(network.loop)
     x = [0.0] * size
 
-    def evaluate(at: list[float]) -> tuple[list[float], list[list[float]]]:
+    def evaluate(at: list[float]) -> tuple[list[float], list[list[float]], bool]:
         replay = Replay(Floats(), lambda s: at[s[1]] if s[0] == LOOP else known(s))
-        return (
-            [float(replay(r)) for r in network.loop],
-            [[float(replay(e)) for e in row] for row in network.loop_jacobian],
-        )
+        try:
+            residual = [float(replay(r)) for r in network.loop]
+            slopes = [[float(replay(e)) for e in row] for row in network.loop_jacobian]
+            terms = [float(replay(e)) for e in network.loop_sizes]
+        except (ModelError, ArithmeticError):
+            return [math.inf] * size, [], False
+        pairs = zip(residual, terms, strict=True)
+        return residual, slopes, all(abs(r) <= ROUNDING * term for r, term in pairs)
 
-    residual, jacobian = evaluate(x)
+    residual, jacobian, solved_ = evaluate(x)
+    gap = _norm(residual)
     for _ in range(MOST_STEPS):
+        if not 0 < gap < math.inf:
+            break
         try:
             step = np.linalg.solve(np.array(jacobian), -np.array(residual))
         except np.linalg.LinAlgError:
             break
-        length, before = 1.0, _norm(residual)
-        for _ in range(MOST_HALVINGS):
-            trial = [a + length * float(b) for a, b in zip(x, step, strict=True)]
-            try:
-                found = evaluate(trial)
-            except (ModelError, ArithmeticError):
-                found = ([math.inf], [])
-            if _norm(found[0]) <= before:
+        found, trial = ([math.inf], jacobian, False), x
+        for halving in range(MOST_HALVINGS):
+            trial = [a + float(b) / 2**halving for a, b in zip(x, step, strict=True)]
+            found = evaluate(trial)
+            if _norm(found[0]) <= gap:
                 break
-            length /= 2
-        done = all(abs(b) <= ENOUGH * (abs(a) + 1e-300) for a, b in zip(trial, step, strict=True))
-        if not _norm(found[0]) <= before or done or _norm(found[0]) == 0.0:
-            if _norm(found[0]) <= before:
-                x = trial
-            return x
-        x, (residual, jacobian) = trial, found
+        if not _norm(found[0]) <= gap:
+            break
+        x, before = trial, gap
+        residual, jacobian, gap = found[0], found[1], _norm(found[0])
+        # once it is rounding, go on while that still becomes less
+        if solved_ and gap > before / 2:
+            break
+        solved_ = found[2]
+    if gap == 0 or (solved_ and gap < math.inf):
+        return x
     raise ModelError("model", "the algebraic loop of its network has no solution here")
 
 

@@ -71,6 +71,7 @@ class Solver:
             else:
                 rows.append(row)
         found = eliminate(rows, self._dag, self._residues, self._natural(nonlinear))
+        found.values = {symbol: self._pruned(value) for symbol, value in found.values.items()}
         self._pivots = found.pivots
         values = {
             symbol: self._dag.symbol(*symbol)
@@ -80,6 +81,16 @@ class Solver:
         values |= found.values
         free = [s for s in self._kirchhoff.primaries if s not in values]
         return self._nonlinear(nonlinear, values, free)
+
+    def _pruned(self, value: Scalar) -> Scalar:
+        """A value without the unknowns that cancel in it: elimination adds and subtracts them."""
+        dead = {
+            symbol: 0
+            for symbol in self._calculus.support(value)
+            if (symbol[0] == DUAL or (self._kirchhoff.knows(symbol) and symbol not in self._known))
+            and not self._residues(self._calculus.derivative(value, symbol))
+        }
+        return substitution(self._dag, dead)(value) if dead else value
 
     def _state_rows(self) -> list[Row]:
         """A state that is no primary variable of the tree still is what Kirchhoff's laws say."""
