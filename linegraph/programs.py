@@ -182,17 +182,13 @@ def _solved(
     f: Functions, solution: Solution, bounds: list[Scalar], calls: tuple[Call, ...]
 ) -> Program:
     first = f.tree.layout.mechanical
-    checks = [
-        Check(pivot, bound, i + 1, f"the mass matrix is singular at {f.tree.velocities[i].name}")
-        for i, (pivot, bound) in enumerate(zip(solution.pivots, bounds, strict=True))
-        if isinstance(pivot, Node) and (i < first or f.symmetric)
-    ]
-    checks += [
-        Check(size, 0, i + 1, f"the mass matrix is singular at {f.tree.velocities[i].name}")
-        for i, pivot in enumerate(solution.pivots)
-        if i >= first and not f.symmetric
-        if isinstance(size := f.dag.function("abs", pivot), Node)
-    ]
+    checks = []
+    for i, (pivot, bound) in enumerate(zip(solution.pivots, bounds, strict=True)):
+        # what a network stores may be negative, behind an op-amp say; inertia may not
+        size = pivot if i < first else f.dag.function("abs", pivot)
+        if isinstance(size, Node):
+            about = f"the mass matrix is singular at {f.tree.velocities[i].name}"
+            checks.append(Check(size, bound if i < first else 0, i + 1, about))
     accelerations = tuple(solution.unknowns)
     result = Result("a", (len(accelerations),), accelerations, ARGUMENTS["a"])
     about = "Forward dynamics a = M(q)^-1 (Q(u) - h(q, v))."

@@ -905,6 +905,8 @@ def test_synchronous_machine_runs_as_its_axes_say(find: Find) -> None:
         turning = machine.axes @ machine.spin @ [d, q, 0] * w
         for k in range(3):
             if f"i_machine_winding{k + 1}" in rate:
-                assert rate[f"i_machine_winding{k + 1}"] == pytest.approx(turning[k], rel=1e-8, abs=1e-7)
+                assert rate[f"i_machine_winding{k + 1}"] == pytest.approx(
+                    turning[k], rel=1e-8, abs=1e-7
+                )
         assert rate["w_rotor"] == pytest.approx(0, abs=1e-8)
         assert system.outputs(p, x, u)["torque"] == pytest.approx(torque, rel=1e-11, abs=1e-11)

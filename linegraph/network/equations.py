@@ -99,6 +99,10 @@ class _Derivation:
             rate = self._put(own.rate)
             if not any(kind == DUAL for kind, _ in self._calculus.support(rate)):
                 self._rates.known[own.key] = rate
+        for residual in self._statics.residuals:
+            for kind, place in self._calculus.support(residual):
+                if kind == DUAL:
+                    raise self._rates.too_deep(kind, place)
         duals = self._duals()
         complete = substitution(self._dag, duals)
         variables = {

@@ -114,6 +114,13 @@ class Network:
         return [[self.laws.calculus.derivative(r, (LOOP, k)) for k in size] for r in self.loop]
 
     @cached_property
+    def loop_needs(self) -> frozenset[Symbol]:
+        """The symbols that the algebraic loop depends on beside its unknowns."""
+        slopes = (slope for row in self.loop_jacobian for slope in row)
+        supports = (self.laws.calculus.support(x) for x in (*self.loop, *slopes, *self.loop_sizes))
+        return frozenset(s for support in supports for s in support if s[0] != LOOP)
+
+    @cached_property
     def loop_sizes(self) -> list[Scalar]:
         """The size of the terms of what is zero there: at a solution it is zero but for their rounding."""
         return [Sizes(self.laws.calculus)(r) for r in self.loop]
@@ -180,7 +187,7 @@ class Network:
         """What inputs add to a row: their slopes times them, where these are free of inputs."""
         slopes = {
             symbol: slope
-            for symbol, slope in sorted(self.laws.calculus.gradient(row).items(), key=repr)
+            for symbol, slope in sorted(self.laws.calculus.gradient(row).items(), key=_symbol_first)
             if symbol[0] in INPUTS
         }
         if any(
@@ -196,7 +203,10 @@ class Network:
         """The total derivative of what depends on states, displacements and the time."""
         total: Scalar = 0
         follows = {"x": "w", "w": SHAFT_RATE, "u": "du", "du": "ddu"}
+        residues = Residues()
         for (kind, place), slope in self.laws.calculus.gradient(x).items():
+            if not residues(slope):
+                continue  # it cancels
             rate: Scalar = 1
             if (kind, place) in self.places:
                 rate = self.dag.symbol(RATE, self.places[(kind, place)])
@@ -260,3 +270,8 @@ class Network:
     def domains(self) -> tuple[str, ...]:
         """The scalar subspaces it has."""
         return tuple(topology.projection.domain for topology in self.topologies)
+
+
+def _symbol_first(item: tuple[Symbol, Scalar]) -> str:
+    """An order of slopes that does not depend on how they were found."""
+    return repr(item[0])

@@ -32,9 +32,10 @@ def solved(network: Network, known: Callable[[Symbol], float]) -> list[float]:
 
     size = len(network.loop)
     x = [0.0] * size
+    given = {symbol: known(symbol) for symbol in network.loop_needs}
 
     def evaluate(at: list[float]) -> tuple[list[float], list[list[float]], bool]:
-        replay = Replay(Floats(), lambda s: at[s[1]] if s[0] == LOOP else known(s))
+        replay = Replay(Floats(), lambda s: at[s[1]] if s[0] == LOOP else given[s])
         try:
             residual = [float(replay(r)) for r in network.loop]
             slopes = [[float(replay(e)) for e in row] for row in network.loop_jacobian]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from linegraph.errors import ModelError
 from linegraph.network.network import RATE, SHAFT_RATE
 from linegraph.network.static import DUAL, LOOP
+from linegraph.residues import Residues
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -40,12 +41,14 @@ class Rates:
         self.known: dict[Symbol, Scalar] = {}
         self._calculus, self._dag = calculus, calculus.dag
         self._dependent = tuple(dependent)
+        self._residues = Residues()
 
     def of(self, x: Scalar) -> Scalar:
         """The total derivative, linear in the rates of states and the accelerations of edges."""
         total: Scalar = 0
         for symbol, slope in self._calculus.gradient(x).items():
-            total = total + slope * self._of(symbol)
+            if self._residues(slope):
+                total = total + slope * self._of(symbol)
         return total
 
     def _of(self, symbol: Symbol) -> Scalar:

@@ -72,7 +72,7 @@ def select(
     weights = _weights(branches, laws, judge, names)
     for name in wanted:
         if name in weights and name not in names:
-            weights[name] = -1.0
+            weights[name] -= 0.4  # before its like: nonlinear laws stay where they can be solved
     topologies = tuple(choose_forest(p, weights, (GROUND,)) for p in projections)
     chosen = tuple(store for store in laws.stores if store.edge in names)
     return Selection(chosen, dependent, determined, topologies)
