@@ -192,7 +192,8 @@ class _Judgement:
         if values[0] > 1e-12 * max(np.abs(M).max(), 1e-300):
             return None
         motion = np.abs(allowed @ vectors[:, 0])
-        pairs = zip(self.tree.velocities, motion, strict=True)
+        mechanical = self.tree.velocities[: self.tree.layout.mechanical]
+        pairs = zip(mechanical, motion, strict=True)
         return [quantity.name for quantity, x in pairs if x > 0.1 * motion.max()]
 
     def _no_inertia(self, names: Sequence[str]) -> ModelError:

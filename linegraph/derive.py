@@ -306,7 +306,7 @@ class Numeric:
         kinetic, potential = orthogonality.energy(self.tree, self.algebra, self._arms(q, v))
         acting = self.applied(q, v, driven=False)
         exchange = self.exchange(q, v)
-        stored = () if exchange is None else (float(exchange.energy()),)
+        stored = () if exchange is None else (exchange.energy(),)
         return kinetic, potential + (acting.potential if acting else 0), *stored
 
     def applied(self, q: Sequence[float], v: Sequence[float], *, driven: bool) -> Applied | None:

@@ -13,7 +13,7 @@ from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL, Dag, Node
 from linegraph.jets import derivatives
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Collection, Iterable, Mapping
 
     from linegraph.algebra import Algebra
     from linegraph.vector import Scalar
@@ -37,9 +37,10 @@ class Calculus:
         True
     """
 
-    def __init__(self, dag: Dag) -> None:
-        """Nothing is known yet."""
+    def __init__(self, dag: Dag, constants: Collection[str] = ()) -> None:
+        """Nothing is known yet; symbols of the arguments `constants` are numbers to it."""
         self.dag = dag
+        self._constants = constants
         self._gradients: dict[int, Gradient] = {}
         self._supports: dict[int, frozenset[Symbol]] = {}
 
@@ -49,7 +50,8 @@ class Calculus:
             return frozenset()
         for node in _below(x, self._supports):
             if node.op == SYMBOL:
-                self._supports[node.index] = frozenset({(node.a, node.b)})
+                named = node.a not in self._constants
+                self._supports[node.index] = frozenset({(node.a, node.b)} if named else ())
             else:
                 parts = [self._supports[p.index] for p in operands(node)]
                 self._supports[node.index] = parts[0].union(*parts[1:])
@@ -73,7 +75,7 @@ class Calculus:
 
     def _of(self, node: Node) -> Gradient:
         if node.op == SYMBOL:
-            return {(node.a, node.b): 1}
+            return {} if node.a in self._constants else {(node.a, node.b): 1}
         found: Gradient = {}
         for operand, factor in zip(operands(node), self._partials(node), strict=True):
             for symbol, slope in self._gradients[operand.index].items():

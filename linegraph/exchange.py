@@ -8,6 +8,7 @@ model.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,7 @@ from linegraph.formula import variable_of
 from linegraph.network.network import RATE, SHAFT_RATE
 from linegraph.network.newton import solved
 from linegraph.network.static import LOOP
+from linegraph.residues import CONSTANT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -182,6 +184,8 @@ class Exchange:
             return self.motion_of(place).w
         if kind == "p":
             return self.parameters[place]
+        if kind == CONSTANT:
+            return float(Fraction(place))
         if kind == "t":
             return self.algebra.symbol("t")
         if kind in ("u", "du", "ddu"):

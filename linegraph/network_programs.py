@@ -52,7 +52,7 @@ def algebraic_loop(f: Functions) -> tuple[Program | Routine, ...]:
     given = tuple(a for a in equations.arguments if a.name != "loop")
     solver = Routine(
         LOOP_FUNCTION,
-        "Solve the network's algebraic loop by Newton's method with halved steps, from zero on.",
+        "Solve the network's algebraic loop by Newton's method with halved steps, from 0, else from 1 or -1.",
         given,
         (Result("loop", (size,), (), "unknowns of the algebraic loop"),),
         "newton",

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from linegraph.vector import Scalar
 
 PRIME = 2**61 - 1
+CONSTANT = "c"
+"""The argument of symbols that stand for a number, which is the text of their place."""
 
 Row = dict[Any, int]
 """A sparse row of residues."""
@@ -62,7 +64,8 @@ class Residues:
 
     def _of(self, node: Node) -> int:
         if node.op == SYMBOL:
-            return _hashed("symbol", node.a, node.b)
+            known = node.a == CONSTANT
+            return of_number(Fraction(node.b)) if known else _hashed("symbol", node.a, node.b)
         a = self._operand(node.a)
         b = self._operand(node.b) if node.b is not None else 0
         if node.op == NEG:

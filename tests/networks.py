@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,7 +32,10 @@ def linear(model: Model) -> tuple[list[Symbol], Array, dict[int, Array]]:
     given = {p.name: p.value for p in model.parameters.values()}
 
     def at_rest(symbol: Symbol) -> float:
-        return float(given[symbol[1]]) if symbol[0] == "p" else 0.0
+        kind, place = symbol
+        return (
+            float(given[place]) if kind == "p" else float(Fraction(place)) if kind == "c" else 0.0
+        )
 
     value = numbers(network, at_rest)
     n = len(network.states)

@@ -23,6 +23,7 @@ from linegraph.expression import Dag, Node
 from linegraph.formula import variable_of
 from linegraph.parameters import names_in, resolver, valued
 from linegraph.program import Quantity
+from linegraph.residues import CONSTANT
 from linegraph.topology import choose_forest
 
 if TYPE_CHECKING:
@@ -104,7 +105,7 @@ def laws_of(model: Model, branches: Sequence[Branch], projections: Sequence[Proj
         ModelError: a law names what does not exist, or has no value.
     """
     dag = Dag()
-    laws = Laws(dag, Calculus(dag))
+    laws = Laws(dag, Calculus(dag, (CONSTANT,)))
     names = _Names(model, branches, dag)
     ways = _ways(projections, {branch.name for branch in branches if branch.kept == ACROSS})
     by_component: dict[str, list[Branch]] = {}
@@ -235,7 +236,7 @@ class At:
     def value(self, given: Any, **own: Scalar) -> Scalar:
         """A model value as a scalar."""
         values = self._names.with_own(own) if own else self._names
-        return exact(resolver(self._laws.dag, values)(given))
+        return constant(resolver(self._laws.dag, values)(given), self._laws.dag)
 
     def function(self, name: str, *x: Scalar) -> Scalar:
         """A function."""
@@ -265,12 +266,17 @@ class At:
         )
 
 
-def exact(x: Scalar) -> Scalar:
-    """A number as its decimal digits say it: what cancels, cancels."""
-    if not isinstance(x, float) or not math.isfinite(x):
+def constant(x: Scalar, dag: Dag) -> Scalar:
+    """A number as its decimal digits say it: what cancels, cancels.
+
+    One that is not whole is a symbol that carries its value: sums and products of many exact fractions would
+    grow without bound. `Residues` knows what it is worth, and it is a number again where the network is used.
+    """
+    if isinstance(x, float) and math.isfinite(x):
+        x = Fraction(repr(x))
+    if not isinstance(x, Fraction):
         return x
-    found = Fraction(repr(x))
-    return int(found) if found.denominator == 1 else found
+    return int(x) if x.denominator == 1 else dag.symbol(CONSTANT, str(x))
 
 
 def _across(dag: Dag, branch: Branch) -> Scalar:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from linegraph.differentiation import Sizes, substitution
 from linegraph.errors import ModelError
 from linegraph.network.static import LOOP
-from linegraph.residues import Residues
+from linegraph.residues import CONSTANT, Residues
 
 if TYPE_CHECKING:
     from linegraph.components.base import Component
@@ -214,7 +214,7 @@ class Network:
                 rate = self.dag.symbol("name", f"der({place})")
             elif kind in follows:
                 rate = self.dag.symbol(follows[kind], place)
-            elif kind == "p":
+            elif kind in ("p", CONSTANT):
                 continue
             total = total + slope * rate
         return total
@@ -245,7 +245,9 @@ class Network:
         """Whether what a component stores depends on more than itself."""
         own = {branch.name for branch in self.branches if branch.component is component}
         return any(
-            kind != "p" and place not in own and not str(place).startswith(f"{component.name}.")
+            kind not in ("p", CONSTANT)
+            and place not in own
+            and not str(place).startswith(f"{component.name}.")
             for kind, place in self.laws.calculus.support(self.laws.energy[component.name])
         )
 

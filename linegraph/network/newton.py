@@ -18,12 +18,13 @@ if TYPE_CHECKING:
 
 MOST_STEPS = 200
 MOST_HALVINGS = 40
+BEGINS = (0.0, 1.0, -1.0)
 ROUNDING = 1e-13
 """A residual below this fraction of its terms is zero."""
 
 
 def solved(network: Network, known: Callable[[Symbol], float]) -> list[float]:
-    """The unknowns of a network's algebraic loop, from zero on.
+    """The unknowns of a network's algebraic loop, from zero on, or from one or minus one where that fails.
 
     Raises:
         ModelError: no solution was found.
@@ -31,11 +32,13 @@ def solved(network: Network, known: Callable[[Symbol], float]) -> list[float]:
     import numpy as np
 
     size = len(network.loop)
-    x = [0.0] * size
     given = {symbol: known(symbol) for symbol in network.loop_needs}
 
+    def known_of(symbol: Symbol) -> float:
+        return given[symbol] if symbol in given else known(symbol)
+
     def evaluate(at: list[float]) -> tuple[list[float], list[list[float]], bool]:
-        replay = Replay(Floats(), lambda s: at[s[1]] if s[0] == LOOP else given[s])
+        replay = Replay(Floats(), lambda s: at[s[1]] if s[0] == LOOP else known_of(s))
         try:
             residual = [float(replay(r)) for r in network.loop]
             slopes = [[float(replay(e)) for e in row] for row in network.loop_jacobian]
@@ -45,31 +48,33 @@ def solved(network: Network, known: Callable[[Symbol], float]) -> list[float]:
         pairs = zip(residual, terms, strict=True)
         return residual, slopes, all(abs(r) <= ROUNDING * term for r, term in pairs)
 
-    residual, jacobian, solved_ = evaluate(x)
-    gap = _norm(residual)
-    for _ in range(MOST_STEPS):
-        if not 0 < gap < math.inf:
-            break
-        try:
-            step = np.linalg.solve(np.array(jacobian), -np.array(residual))
-        except np.linalg.LinAlgError:
-            break
-        found, trial = ([math.inf], jacobian, False), x
-        for halving in range(MOST_HALVINGS):
-            trial = [a + float(b) / 2**halving for a, b in zip(x, step, strict=True)]
-            found = evaluate(trial)
-            if _norm(found[0]) <= gap:
+    for begin in BEGINS:
+        x = [begin] * size
+        residual, jacobian, solved_ = evaluate(x)
+        gap = _norm(residual)
+        for _ in range(MOST_STEPS):
+            if not 0 < gap < math.inf:
                 break
-        if not _norm(found[0]) <= gap:
-            break
-        x, before = trial, gap
-        residual, jacobian, gap = found[0], found[1], _norm(found[0])
-        # once it is rounding, go on while that still becomes less
-        if solved_ and gap > before / 2:
-            break
-        solved_ = found[2]
-    if gap == 0 or (solved_ and gap < math.inf):
-        return x
+            try:
+                step = np.linalg.solve(np.array(jacobian), -np.array(residual))
+            except np.linalg.LinAlgError:
+                break
+            found, trial = ([math.inf], jacobian, False), x
+            for halving in range(MOST_HALVINGS):
+                trial = [a + float(b) / 2**halving for a, b in zip(x, step, strict=True)]
+                found = evaluate(trial)
+                if _norm(found[0]) <= gap:
+                    break
+            if not _norm(found[0]) <= gap:
+                break
+            x, before = trial, gap
+            residual, jacobian, gap = found[0], found[1], _norm(found[0])
+            # once it is rounding, go on while that still becomes less
+            if solved_ and gap > before / 2:
+                break
+            solved_ = found[2]
+        if gap == 0 or (solved_ and gap < math.inf):
+            return x
     raise ModelError("model", "the algebraic loop of its network has no solution here")
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from linegraph.errors import ModelError
 from linegraph.network.network import RATE, SHAFT_RATE
 from linegraph.network.static import DUAL, LOOP
-from linegraph.residues import Residues
+from linegraph.residues import CONSTANT, Residues
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -61,7 +61,7 @@ class Rates:
             return self._dag.symbol(RATE, self.places[symbol])
         if kind == "t":
             return 1
-        if kind == "p":
+        if kind in ("p", CONSTANT):
             return 0
         follows = {"x": "w", "w": SHAFT_RATE, "u": "du", "du": "ddu"}
         if kind in follows:
