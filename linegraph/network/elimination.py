@@ -1,7 +1,8 @@
 """Linear equations solved over the DAG: pivots chosen by exact residues, every result a named step.
 
-Pivots that are plain numbers come first, so that only what is a resistive loop is ever divided by; among
-equals the one that fills least (Markowitz).
+Pivots of plus or minus one come first, so that only what is a resistive loop is ever divided by; then those
+in which a law is solved for a variable of its own edges, the diagonal: resistances make that positive
+definite, so that no size has to be looked at; among equals the one that fills least (Markowitz).
 """
 
 from __future__ import annotations
@@ -21,10 +22,15 @@ if TYPE_CHECKING:
 
 @dataclass
 class Row:
-    """``Σ entries unknown + rest = 0``."""
+    """``Σ entries unknown + rest = 0``.
+
+    Attributes:
+        owner: whose law it is; its own variables are pivots rather than others.
+    """
 
     entries: dict[Symbol, Scalar]
     rest: Scalar
+    owner: str = ""
 
 
 @dataclass
@@ -85,7 +91,7 @@ def eliminate(
 
 
 def _cleaned(row: Row, residues: Residues) -> Row:
-    return Row({s: e for s, e in row.entries.items() if residues(e)}, row.rest)
+    return Row({s: e for s, e in row.entries.items() if residues(e)}, row.rest, row.owner)
 
 
 def _subtract(row: Row, scaled: Row, factor: Scalar, residues: Residues) -> None:
@@ -104,11 +110,13 @@ def _pivot(rows: Sequence[Row], last: Collection[Symbol]) -> tuple[int, Symbol] 
     for row in rows:
         for symbol in row.entries:
             columns[symbol] = columns.get(symbol, 0) + 1
-    best: tuple[tuple[int, int, int], int, Symbol] | None = None
+    best: tuple[tuple[int, bool, int, int, int], int, Symbol] | None = None
     for place, row in enumerate(rows):
         for symbol, entry in row.entries.items():
             fill = (len(row.entries) - 1) * (columns[symbol] - 1)
-            cost = (_grade(entry) + 10 * (symbol in last), fill, place)
+            grade = _grade(entry)
+            foreign = str(symbol[1]).partition(".")[0] != row.owner
+            cost = (min(grade, 1) + 10 * (symbol in last), foreign, fill, grade, place)
             if best is None or cost < best[0]:
                 best = cost, place, symbol
     return None if best is None else (best[1], best[2])

@@ -69,6 +69,7 @@ class Solver:
             if row is None:
                 nonlinear.append(static)
             else:
+                row.owner = static.component.name
                 rows.append(row)
         found = eliminate(rows, self._dag, self._residues, self._natural(nonlinear))
         found.values = {symbol: self._pruned(value) for symbol, value in found.values.items()}
