@@ -75,8 +75,8 @@ class Articulated(NamedTuple):
 
 def rigid(moments: Moments) -> Articulated:
     """The map of a single rigid body: n = J α + b x a, f = α x b + m a."""
-    m, (x, y, z), inertia = moments
-    return Articulated(inertia, ((0, -z, y), (z, 0, -x), (-y, x, 0)), (m, 0, 0, m, 0, m))
+    m, (x, y, z), _ = moments
+    return Articulated(moments.inertia, ((0, -z, y), (z, 0, -x), (-y, x, 0)), (m, 0, 0, m, 0, m))
 
 
 def forward_dynamics(
@@ -96,10 +96,8 @@ def forward_dynamics(
     inverse: list[Scalar] = [0] * size
     net: list[Scalar] = [0] * size
     spins, extra = bias_accelerations(tree, algebra, list(crossed))
-    maps = [rigid(link.moments) for link in tree.links]
-    wrenches = [
-        bias_force(link.moments, spin) for link, spin in zip(tree.links, spins, strict=True)
-    ]
+    maps = [rigid(arm.moments) for arm in crossed]
+    wrenches = [bias_force(arm.moments, spin) for arm, spin in zip(crossed, spins, strict=True)]
     responses: list[list[Wrench]] = [[] for _ in tree.links]
     for i in reversed(range(len(tree.links))):
         link, arm = tree.links[i], crossed[i]

@@ -16,7 +16,7 @@ from linegraph import vector
 from linegraph.algebra import Constants
 from linegraph.body import Body, Placement
 from linegraph.joints import Joint, Moments
-from linegraph.joints.base import Restriction, point_apart
+from linegraph.joints.base import Restriction, point_apart, second_moments
 from linegraph.rotation import Rotation, product, rotation_of, snapped
 from linegraph.vector import ZERO, Matrix, Scalar, Vector
 
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from linegraph.program import Quantity
 
 Resolve = Callable[[Any], Scalar]
-NO_MOMENTS = Moments(0, ZERO, (0, 0, 0, 0, 0, 0))
 
 
 @dataclass(frozen=True)
@@ -43,7 +42,8 @@ class Link:
         forward: whether the joint's edge points away from ground.
         rotation, at: the joint's near frame in the parent's working frame; constant.
         place: where the joint's q and v come from.
-        moments: mass distribution about the working origin, in working axes.
+        moments: mass distribution about the joint's own origin and in axes that turn with the link.
+        still: whether the working axes do not turn with the link but stay those of the joint's near side.
     """
 
     name: str
@@ -54,6 +54,7 @@ class Link:
     at: Vector
     place: Place
     moments: Moments
+    still: bool = False
 
     @property
     def velocities(self) -> tuple[Freedom, ...]:
@@ -68,7 +69,7 @@ class Link:
     @property
     def numeric(self) -> bool:
         """Whether the mass distribution is made of numbers."""
-        scalars = (self.moments.mass, *self.moments.first, *self.moments.inertia)
+        scalars = (self.moments.mass, *self.moments.first, *self.moments.second)
         return all(isinstance(x, (int, float)) for x in scalars)
 
 
@@ -198,43 +199,40 @@ class KinematicTree:
 def carried(moments: Moments, rotation: Rotation, at: Vector) -> Moments:
     """Moments about an inner origin, resolved about an outer one and in outer axes.
 
-    With b the rotated first moment and m the mass, the inertia gains
-    2 (at . b) 1 - at b^T - b at^T + m (at . at 1 - at at^T).
+    With b the rotated first moment and f = b + m at the one about the outer origin, the second moments gain
+    at b^T + f at^T.
     """
     m = moments.mass
     b = rotation.out(moments.first)
-    xx, xy, xz, yy, yz, zz = rotation.congruence(moments.inertia)
+    xx, xy, xz, yy, yz, zz = rotation.congruence(moments.second)
     first = vector.add(b, vector.scale(m, at))
-    # at . (b + first) collects both the first-moment and the mass term
-    c = vector.add(b, first)
-    px, py, pz = (at[k] * c[k] for k in range(3))
     return Moments(
         m,
         first,
         (
-            xx + (py + pz),
-            xy - (at[0] * b[1] + at[1] * first[0]),
-            xz - (at[0] * b[2] + at[2] * first[0]),
-            yy + (px + pz),
-            yz - (at[1] * b[2] + at[2] * first[1]),
-            zz + (px + py),
+            xx + at[0] * (b[0] + first[0]),
+            xy + (at[0] * b[1] + at[1] * first[0]),
+            xz + (at[0] * b[2] + at[2] * first[0]),
+            yy + at[1] * (b[1] + first[1]),
+            yz + (at[1] * b[2] + at[2] * first[1]),
+            zz + at[2] * (b[2] + first[2]),
         ),
     )
 
 
 def joined(a: Moments, b: Moments) -> Moments:
     """The moments of two bodies together, about one origin and in one frame."""
-    inertia = tuple(x + y for x, y in zip(a.inertia, b.inertia, strict=True))
-    return Moments(a.mass + b.mass, vector.add(a.first, b.first), inertia)
+    second = tuple(x + y for x, y in zip(a.second, b.second, strict=True))
+    return Moments(a.mass + b.mass, vector.add(a.first, b.first), second)
 
 
 def body_moments(body: Body, resolve: Resolve) -> Moments:
     """A body's mass distribution about its own frame's origin."""
     mass = resolve(body.mass)
-    inertia = tuple(resolve(x) for x in body.inertia)
+    second = second_moments(tuple(resolve(x) for x in body.inertia))
     if body.first is not None:
-        return Moments(mass, resolved(body.first, resolve), inertia)
-    central = Moments(mass, ZERO, inertia)
+        return Moments(mass, resolved(body.first, resolve), second)
+    central = Moments(mass, ZERO, second)
     return carried(central, Rotation(), resolved(body.center or ZERO, resolve))
 
 

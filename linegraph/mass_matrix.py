@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from linegraph import vector
 from linegraph.joints import Moments
+from linegraph.joints.base import NO_MOMENTS
 from linegraph.kinematics import KinematicTree, carried, joined
 from linegraph.layout import Freedom
 from linegraph.orthogonality import Arm, applied_to, caption, gathered, projection, set_label
@@ -123,7 +124,7 @@ TURNING: dict[type, int] = {Relabel: 0, Turn: 12, Full: 30}
 
 def composites(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> list[Moments]:
     """What each joint carries: moments gathered from the leaves to the root (H m H^T and its kin)."""
-    moments = [link.moments for link in tree.links]
+    moments = [arm.moments for arm in crossed]
     for i in reversed(range(len(tree.links))):
         link = tree.links[i]
         if link.parent >= 0:
@@ -131,7 +132,7 @@ def composites(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> lis
             carry = moments[i]
             if crossed[i].level:
                 # what turns against ground moves with its parent like a point
-                carry = Moments(carry.mass, ZERO, (0, 0, 0, 0, 0, 0))
+                carry = NO_MOMENTS._replace(mass=carry.mass)
             seen = carried(carry, crossed[i].rotation, crossed[i].at)
             moments[link.parent] = joined(moments[link.parent], seen)
     return moments
@@ -139,9 +140,9 @@ def composites(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> lis
 
 def _inertia_force(composite: Moments, angular: Vector, linear: Vector) -> tuple[Vector, Vector]:
     """Force and torque about the origin for accelerations (angular, linear) of a composite at rest."""
-    mass, first, inertia = composite
+    mass, first, _ = composite
     force = add(vector.scale(mass, linear), cross(angular, first))
-    torque = add(applied_to(inertia, angular), cross(first, linear))
+    torque = add(applied_to(composite.inertia, angular), cross(first, linear))
     return force, torque
 
 

@@ -22,11 +22,11 @@ from typing import TYPE_CHECKING, NamedTuple
 from linegraph import vector
 from linegraph.joints import Moments, Motion
 from linegraph.layout import coordinates, own_rates
-from linegraph.rotation import Full, Rotation
+from linegraph.rotation import Full, Rotation, Turn
 from linegraph.vector import ZERO, Scalar, Vector, add, cross, dot, subtract
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from linegraph.algebra import Algebra
     from linegraph.kinematics import KinematicTree, Link
@@ -45,14 +45,20 @@ class Arm(NamedTuple):
         prescribed: their derivatives where the motion is prescribed; none where it is free.
         level: whether the link turns against ground and not against its parent: in rotation its inertia
             edge is the branch.
+        moments: the link's mass distribution about its origin, in working axes.
+        turn: of a link whose working axes are still, its own axes to those.
+        angle: of that turn about z.
     """
 
     rotation: Rotation
     at: Vector
     motion: Motion
     rates: tuple[Scalar, ...]
-    prescribed: tuple[Scalar, ...] = ()
-    level: bool = False
+    prescribed: tuple[Scalar, ...]
+    level: bool
+    moments: Moments
+    turn: Rotation = Rotation()
+    angle: Scalar = 0
 
 
 class Spin(NamedTuple):
@@ -77,14 +83,42 @@ def arms(
         motion = link.joint.motion(algebra, positions, rates)
         if not link.forward:
             motion = reverse(motion)
+        near = found[link.parent].turn if link.parent >= 0 else Rotation()
         if link.in_space:
             rotation = _against_parent(tree, found, link, motion.rotation)
         else:
             rotation = link.rotation @ motion.rotation
-        at = add(link.at, link.rotation.out(motion.displacement))
+        at = near.out(add(link.at, link.rotation.out(motion.displacement)))
         prescribed = tuple(x.ddx for x in link.place.drive)
-        found.append(Arm(rotation, at, motion, rates, prescribed, link.place.level))
+        arm = Arm(rotation, at, motion, rates, prescribed, link.place.level, link.moments)
+        if link.still or (near.factors and parallel(link)):
+            (angle,) = positions
+            arm = _in_a_run(algebra, link, arm, found, angle if link.forward else -angle)
+        found.append(arm)
     return found
+
+
+def _in_a_run(algebra: Algebra, link: Link, arm: Arm, found: Sequence[Arm], angle: Scalar) -> Arm:
+    """A link in a run of parallel axes: its angle is measured from the first one's near side.
+
+    With L the constant rotation to the joint, which keeps z or turns it round,
+    ``Rz(a) L Rz(b) = L Rz(b + a)`` or ``L Rz(b - a)``.
+    """
+    rotation = link.rotation
+    if link.parent >= 0 and found[link.parent].turn.factors:
+        along = rotation.out((0, 0, 1))[2]
+        angle = angle + along * found[link.parent].angle
+    turn = Rotation((Turn(2, algebra.cos(angle), algebra.sin(angle)),))
+    if not link.still:
+        return arm._replace(rotation=rotation @ turn)
+    mass, first, second = arm.moments
+    seen = Moments(mass, turn.out(first), turn.congruence(second))
+    return arm._replace(rotation=rotation, moments=seen, turn=turn, angle=angle)
+
+
+def parallel(link: Link) -> bool:
+    """Whether a link turns about the direction of its parent's z, either way round."""
+    return link.joint.turns and link.rotation.out((0, 0, 1)) in ((0, 0, 1), (0, 0, -1))
 
 
 def _against_parent(
@@ -135,11 +169,11 @@ def inverse_dynamics(
     Motion runs from the root to the leaves (H^T), d'Alembert's forces and torques, less those `applied`,
     back (H).
     """
-    spins = _spins(tree, algebra, crossed, acceleration)
-    forces = [
-        _d_alembert(link.moments, spin, algebra, link)
-        for link, spin in zip(tree.links, spins, strict=True)
-    ]
+    forces = []
+    motions = spins(tree, algebra, crossed, acceleration)
+    for link, arm, spin in zip(tree.links, crossed, motions, strict=True):
+        set_label(algebra, f"forces, {caption(link)}")
+        forces.append(d_alembert(arm.moments, spin))
     total: list[Scalar] = [0] * len(tree.velocities)
     if applied is not None:
         forces = [
@@ -191,9 +225,9 @@ def energy(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> tuple[S
         turned = ZERO if arm.level else arm.rotation.into(angular)
         angular = add(turned, vector.combine(arm.rates, arm.motion.angular))
         velocities.append((angular, linear))
-        mass, first, inertia = link.moments
+        mass, first, _ = arm.moments
         momentum = add(vector.scale(mass, linear), cross(angular, first))
-        spin = add(applied_to(inertia, angular), cross(first, linear))
+        spin = add(applied_to(arm.moments.inertia, angular), cross(first, linear))
         kinetic = kinetic + (dot(linear, momentum) + dot(angular, spin))
     return kinetic / 2, _potential(tree, algebra, crossed)
 
@@ -217,11 +251,11 @@ def coordinate_rates(
     return rates
 
 
-def _spins(
+def spins(
     tree: KinematicTree,
     algebra: Algebra,
-    crossed: list[Arm],
-    acceleration: Iterable[Scalar] | None,
+    crossed: Sequence[Arm],
+    acceleration: Iterable[Scalar] | None = None,
 ) -> list[Spin]:
     """Circuit equations of velocity and acceleration: H^T, from the root to the leaves.
 
@@ -229,43 +263,64 @@ def _spins(
     """
     a = None if acceleration is None else tuple(acceleration)
     ground = Spin(ZERO, ZERO, vector.negate(tree.gravity))
-    spins: list[Spin] = []
+    found: list[Spin] = []
     for link, arm in zip(tree.links, crossed, strict=True):
         set_label(algebra, f"motion, {caption(link)}")
-        near = spins[link.parent] if link.parent >= 0 else ground
-        velocity, angular, linear = _relative(arm, near.velocity)
-        if not arm.level:
-            angular = add(arm.rotation.into(near.angular), angular)
-        linear = add(arm.rotation.into(add(near.linear, _accelerated(near, arm.at))), linear)
+        near = found[link.parent] if link.parent >= 0 else ground
+        here = crossing(arm, near.velocity)
+        angular = here.spin if arm.level else add(arm.rotation.into(near.angular), here.spin)
+        pull = add(near.linear, _accelerated(near, arm.at))
+        linear = add(arm.rotation.into(pull), here.linear)
         if a is not None and link.velocities:
             own = tuple(f.ratio * a[f.index] for f in link.velocities)
             angular = add(angular, vector.combine(own, arm.motion.angular))
             linear = add(linear, vector.combine(own, arm.motion.linear))
-        spins.append(Spin(velocity, angular, linear))
-    return spins
+        found.append(Spin(here.velocity, angular, linear))
+    return found
 
 
-def _relative(arm: Arm, near: Vector) -> tuple[Vector, Vector, Vector]:
+class Crossing(NamedTuple):
     """What a joint makes of its near link's angular velocity, with v̇ = 0 and in the far link's axes.
 
-    Returns:
-        The far link's angular velocity and the joint's share of its angular and linear acceleration.
+    Attributes:
+        before: the near link's angular velocity.
+        turning: the relative one.
+        angular: what the joint adds to the angular acceleration, less ``before x turning``.
+        linear: what it adds to the acceleration of the far link's origin.
     """
+
+    before: Vector
+    turning: Vector
+    angular: Vector
+    linear: Vector
+
+    @property
+    def velocity(self) -> Vector:
+        """The far link's angular velocity."""
+        return add(self.before, self.turning)
+
+    @property
+    def spin(self) -> Vector:
+        """All that the joint adds to the angular acceleration."""
+        return add(cross(self.before, self.turning), self.angular)
+
+
+def crossing(arm: Arm, near: Vector) -> Crossing:
+    """How a joint is crossed whose near link has this angular velocity."""
     motion = arm.motion
     w = vector.combine(arm.rates, motion.angular)
     if arm.level:
         # such joints have no shift: their origin moves with the near link alone
-        return w, motion.angular_bias, ZERO
+        return Crossing(ZERO, w, motion.angular_bias, ZERO)
     u = vector.combine(arm.rates, motion.linear)
-    carried_w = arm.rotation.into(near)
-    velocity = add(carried_w, w)
-    angular = add(cross(carried_w, w), motion.angular_bias)
+    before = arm.rotation.into(near)
+    angular = motion.angular_bias
     # Coriolis: the relative velocity u turns with the near link (twice) and with the joint
-    linear = add(cross(add(velocity, carried_w), u), motion.linear_bias)
+    linear = add(cross(add(add(before, w), before), u), motion.linear_bias)
     if arm.prescribed:
         angular = add(angular, vector.combine(arm.prescribed, motion.angular))
         linear = add(linear, vector.combine(arm.prescribed, motion.linear))
-    return velocity, angular, linear
+    return Crossing(before, w, angular, linear)
 
 
 def bias_accelerations(
@@ -280,20 +335,21 @@ def bias_accelerations(
     for link, arm in zip(tree.links, crossed, strict=True):
         set_label(algebra, f"motion, {caption(link)}")
         near = velocities[link.parent] if link.parent >= 0 else ZERO
-        velocity, angular, linear = _relative(arm, near)
+        crossed_here = crossing(arm, near)
         turning = Spin(near, ZERO, ZERO)
         pull = _accelerated(turning, arm.at)
         if link.parent < 0:
             pull = vector.subtract(pull, tree.gravity)
-        velocities.append(velocity)
-        extra.append((angular, add(arm.rotation.into(pull), linear)))
+        velocities.append(crossed_here.velocity)
+        extra.append((crossed_here.spin, add(arm.rotation.into(pull), crossed_here.linear)))
     return velocities, extra
 
 
 def bias_force(moments: Moments, velocity: Vector) -> tuple[Vector, Vector]:
     """Torque and force, about a link's origin, that its turning asks for at zero acceleration."""
-    _, first, inertia = moments
-    torque = cross(velocity, applied_to(inertia, velocity))
+    _, first, second = moments
+    # ω x J ω: what of J is isotropic does not show
+    torque = cross(applied_to(second, velocity), velocity)
     return torque, _accelerated(Spin(velocity, ZERO, ZERO), first)
 
 
@@ -314,31 +370,35 @@ def _accelerated(spin: Spin, r: Vector) -> Vector:
     )
 
 
-def _d_alembert(
-    moments: Moments, spin: Spin, algebra: Algebra, link: Link
-) -> tuple[Vector, Vector]:
+def d_alembert(moments: Moments, spin: Spin) -> tuple[Vector, Vector]:
     """Force and torque that the motion of a link asks for, about its origin.
 
-    f = m a + U b and n = I ε + ω x I ω + b x a, with b the first moment; the torque's rotational part is
+    f = m a + U b and n = b x a + the axial vector of U S, with b and S the first and second moments; it is
     written with the entries of U, which the force and the arms need anyway.
     """
-    set_label(algebra, f"forces, {caption(link)}")
-    mass, first, inertia = moments
+    mass, first, second = moments
     force = add(vector.scale(mass, spin.linear), _accelerated(spin, first))
     xx, xy, xz, yy, yz, zz = _products(spin.velocity)
     x, y, z = spin.angular
-    jxx, jxy, jxz, jyy, jyz, jzz = inertia
+    sxx, sxy, sxz, syy, syz, szz = second
     torque = (
-        jxx * x + (jzz - jyy) * yz + jxy * (y - xz) + jxz * (z + xy) + jyz * (yy - zz),
-        jyy * y + (jxx - jzz) * xz + jyz * (z - xy) + jxy * (x + yz) + jxz * (zz - xx),
-        jzz * z + (jyy - jxx) * xy + jxz * (x - yz) + jyz * (y + xz) + jxy * (xx - yy),
+        _twisted(syy, szz, yz, x) + (zz - yy) * syz + (xz - y) * sxy - (xy + z) * sxz,
+        _twisted(szz, sxx, xz, y) + (xx - zz) * sxz + (xy - z) * syz - (yz + x) * sxy,
+        _twisted(sxx, syy, xy, z) + (yy - xx) * sxy + (yz - x) * sxz - (xz + y) * syz,
     )
     return force, add(torque, cross(first, spin.linear))
 
 
+def _twisted(a: Scalar, b: Scalar, both: Scalar, turn: Scalar) -> Scalar:
+    """``a (both + turn) - b (both - turn)``; where neither is zero their sum and difference serve better."""
+    if a == 0 or b == 0:
+        return a * (both + turn) - b * (both - turn)
+    return (a + b) * turn + (a - b) * both
+
+
 def _potential(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> Scalar:
     """``-g . (sum of m r)``: first moments gathered from the leaves to the root."""
-    gathered = [(link.moments.mass, link.moments.first) for link in tree.links]
+    gathered = [(arm.moments.mass, arm.moments.first) for arm in crossed]
     total: Vector = ZERO
     for i in reversed(range(len(tree.links))):
         link, arm = tree.links[i], crossed[i]

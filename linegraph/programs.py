@@ -92,13 +92,18 @@ def _bias(f: Functions) -> Program:
 
 
 def _equations(f: Functions) -> Program:
+    """The bias from composites or from single links, whichever takes fewer operations beside M."""
     about = "Mass matrix M(q) and bias h(q, v) at once, sharing work."
-    return f.program("equations", about, ("q", "v"), (f.mass_matrix, f.bias))
+    either = (
+        f.program("equations", about, ("q", "v"), (f.mass_matrix, bias))
+        for bias in dict.fromkeys((f.bias_beside_mass, f.bias))
+    )
+    return min(either, key=lambda program: program.operations)
 
 
 def _inverse_dynamics(f: Functions) -> Program:
     a = f.symbols("a")
-    tau = united_inverse_dynamics(f.short, f.dag, f.arms, f.entries, a, f.passive)
+    tau = united_inverse_dynamics(f.short, f.dag, f.crossed, f.entries, a, f.rehoused(f.passive))
     result = Result("tau", (len(tau),), tuple(tau), "generalised forces along v")
     about = "Inverse dynamics tau = M(q) a + h(q, v), without forming M."
     return f.program("inverse_dynamics", about, ("q", "v", "a"), (result,))
@@ -121,9 +126,9 @@ def _forward_dynamics(f: Functions) -> Program:
 
 def _articulated(f: Functions) -> Program:
     """Links by articulated inertias, networks beside them by their own part of the mass matrix."""
-    carried = orthogonality.generalised_forces(f.short, f.dag, f.arms, f.carried)
+    carried = orthogonality.generalised_forces(f.short, f.dag, f.crossed, f.rehoused(f.carried))
     total = [effort + load for effort, load in zip(f.driving, carried, strict=True)]
-    solution = forward_dynamics(f.short, f.dag, f.arms, total, f.armatures or {})
+    solution = forward_dynamics(f.short, f.dag, f.crossed, total, f.armatures or {})
     first, size = f.tree.layout.mechanical, len(f.v) - f.tree.layout.mechanical
     rows: list[list[Scalar]] = [[0] * size for _ in range(size)]
     for i, j, entry in f.entries:

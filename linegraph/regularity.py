@@ -74,7 +74,8 @@ class _Anything:
 
 def is_solid(link: Link) -> bool:
     """Whether mass and central inertia are positive, with a margin, and the joint's freedoms independent."""
-    m, (x, y, z), (xx, xy, xz, yy, yz, zz) = link.moments
+    m, (x, y, z), _ = link.moments
+    xx, xy, xz, yy, yz, zz = link.moments.inertia
     if m <= 0 or link.joint.singular:
         return False
     cx, cy, cz = x / m, y / m, z / m
@@ -102,9 +103,9 @@ def _first_dependent(tree: KinematicTree, seed: int) -> tuple[int, float] | None
 def _scales(tree: KinematicTree, carried: list[Moments]) -> list[float]:
     """What each coordinate's inertia would be in the worst direction: zero is judged beside it."""
     scales = [0.0] * len(tree.velocities)
-    for link, (mass, first, inertia) in zip(tree.links, carried, strict=True):
-        xx, _, _, yy, _, zz = inertia
-        largest = abs(mass) + sum(map(abs, first)) + abs(xx) + abs(yy) + abs(zz)
+    for link, moments in zip(tree.links, carried, strict=True):
+        xx, _, _, yy, _, zz = moments.inertia
+        largest = abs(moments.mass) + sum(map(abs, moments.first)) + abs(xx) + abs(yy) + abs(zz)
         for freedom in link.velocities:
             scales[freedom.index] += freedom.ratio**2 * largest
     return scales

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from linegraph import network_programs, orthogonality
 from linegraph.closure import Chords, equations
+from linegraph.composite_bias import bias_beside_mass
 from linegraph.exchange import ALL, NONE
 from linegraph.expression import Dag
 from linegraph.inverse_scheme import InverseScheme
@@ -15,6 +17,7 @@ from linegraph.parameters import valued
 from linegraph.program import Argument, Call, Check, Program, Result, assemble, reads
 from linegraph.scope import relations
 from linegraph.united import exchange_at, network_entries, united_mass_matrix
+from linegraph.working_frames import shortened
 
 if TYPE_CHECKING:
     from linegraph.derive import Derivation
@@ -52,7 +55,8 @@ class Functions:
             lambda p: p.value if folded else self.dag.symbol("p", p.name),
         )
         self.tree = derivation.tree(self.dag, self.values)
-        self.short = self.tree.regrouped()
+        self.shortened = shortened(self.tree)
+        self.short = self.shortened.tree
         self.equations = equations(self.tree)
         self.sizes = {
             "q": len(self.tree.positions),
@@ -118,7 +122,7 @@ class Functions:
         state = (tuple(self.q), tuple(self.v))
         return applied(
             self.model,
-            self.short,
+            self.tree,
             self.dag,
             self.values,
             self.arms,
@@ -143,25 +147,36 @@ class Functions:
         if self.affine:
             return self.efforts
         active = self._applied(driven=True, network=NONE)
-        forces = orthogonality.generalised_forces(self.short, self.dag, self.arms, active)
-        return efforts(self.short, self.dag, self.chords, forces)
+        forces = orthogonality.generalised_forces(self.tree, self.dag, self.arms, active)
+        return efforts(self.tree, self.dag, self.chords, forces)
 
     @cached_property
     def held(self) -> list[Scalar]:
         """What v̇ = 0 takes of `carried`: h, where Q can be added to it."""
         if self.affine:
             return list(self.bias.entries)
-        return orthogonality.inverse_dynamics(self.short, self.dag, self.arms, applied=self.carried)
+        return orthogonality.inverse_dynamics(
+            self.short, self.dag, self.crossed, applied=self.rehoused(self.carried)
+        )
 
     @cached_property
     def arms(self) -> list[orthogonality.Arm]:
-        """The joints' motions at (q, v)."""
+        """The joints' motions at (q, v), in the frames of the walk."""
+        return orthogonality.arms(self.tree, self.dag, self.q, self.v)
+
+    @cached_property
+    def crossed(self) -> list[orthogonality.Arm]:
+        """The same in the shortest frames: for M and h."""
         return orthogonality.arms(self.short, self.dag, self.q, self.v)
+
+    def rehoused(self, acting: Applied) -> Applied:
+        """Forces given in the frames of the walk, in the shortest ones."""
+        return replace(acting, wrenches=self.shortened.rehoused(acting.wrenches, self.crossed))
 
     @cached_property
     def mass_matrix(self) -> Result:
         """M as a result."""
-        rows = united_mass_matrix(self.short, self.dag, self.arms, self.entries)
+        rows = united_mass_matrix(self.short, self.dag, self.crossed, self.entries)
         entries = tuple(entry for row in rows for entry in row)
         return Result("M", (len(rows), len(rows)), entries, "mass matrix, both triangles")
 
@@ -169,8 +184,8 @@ class Functions:
     def exchange(self) -> Exchange | None:
         """The networks at (q, v)."""
         state = (tuple(self.q), tuple(self.v))
-        chords = Chords(self.short, self.dag, self.arms, self.values)
-        return exchange_at(self.model, self.short, self.dag, self.values, chords, state)
+        chords = Chords(self.tree, self.dag, self.arms, self.values)
+        return exchange_at(self.model, self.tree, self.dag, self.values, chords, state)
 
     @cached_property
     def entries(self) -> list[tuple[int, int, Scalar]]:
@@ -238,13 +253,28 @@ class Functions:
     @cached_property
     def efforts(self) -> list[Scalar]:
         """Q: joint efforts at their velocities, and what driven elements do."""
-        active = orthogonality.generalised_forces(self.short, self.dag, self.arms, self.active)
-        return efforts(self.short, self.dag, self.chords, active)
+        active = orthogonality.generalised_forces(
+            self.short, self.dag, self.crossed, self.rehoused(self.active)
+        )
+        return efforts(self.tree, self.dag, self.chords, active)
 
     @cached_property
     def bias(self) -> Result:
-        """The bias h as a result."""
-        entries = orthogonality.inverse_dynamics(
-            self.short, self.dag, self.arms, applied=self.passive
+        """The bias h as a result, where it is wanted alone."""
+        return _bias_result(
+            orthogonality.inverse_dynamics(
+                self.short, self.dag, self.crossed, applied=self.rehoused(self.passive)
+            )
         )
-        return Result("h", (len(entries),), tuple(entries), "bias vector")
+
+    @cached_property
+    def bias_beside_mass(self) -> Result:
+        """The bias h as a result, where M is wanted with it."""
+        if self.short.levelled:
+            return self.bias
+        acting = self.rehoused(self.passive)
+        return _bias_result(bias_beside_mass(self.short, self.dag, self.crossed, acting))
+
+
+def _bias_result(entries: list[Scalar]) -> Result:
+    return Result("h", (len(entries),), tuple(entries), "bias vector")

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 from linegraph.body import GROUND, Placement
 from linegraph.errors import ModelError
-from linegraph.joints.base import TORQUES, Restriction
+from linegraph.joints.base import NO_MOMENTS, TORQUES, Restriction
 from linegraph.kinematics import (
-    NO_MOMENTS,
     Closure,
     KinematicTree,
     Link,

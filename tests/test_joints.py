@@ -383,13 +383,13 @@ def test_regrouping_loses_no_mass(kind: str, seed: int) -> None:
 
 
 def test_regrouping_takes_what_it_promises_from_a_revolute_joint() -> None:
-    """Khalil's minimal parameters: mass, z of the first moment and yy leave the link."""
+    """Khalil's minimal parameters: mass, first and second moment along z leave the link."""
     rng = np.random.default_rng(0)
     tree = derive(pair("revolute", True, rng)).tree(Floats(), {})
     kept = tree.regrouped().links[1].moments
-    assert (kept.mass, kept.first[2], kept.inertia[3]) == (0, 0, 0)
+    assert (kept.mass, kept.first[2], kept.second[5]) == (0, 0, 0)
     kept = derive(pair("prismatic", True, rng)).tree(Floats(), {}).regrouped().links[1].moments
-    assert kept.inertia == (0, 0, 0, 0, 0, 0)
+    assert kept.second == (0, 0, 0, 0, 0, 0)
 
 
 @KINDS

@@ -19,6 +19,7 @@ import sympy
 
 from linegraph import LinegraphError, Model, ModelError, Parameter, SourceError, derive
 from linegraph.joints import Moments, Revolute
+from linegraph.joints.base import second_moments
 from linegraph.kinematics import Link
 from linegraph.layout import Place
 from linegraph.regularity import is_solid
@@ -699,7 +700,8 @@ def random_moments(rng: np.random.Generator, principal: list[float], mass: float
     inertia = turn @ np.diag(principal) @ turn.T
     about = inertia + mass * (center @ center * np.eye(3) - np.outer(center, center))
     upper = tuple(float(about[i, j]) for i in range(3) for j in range(i, 3))
-    moments = Moments(mass, tuple((mass * center).tolist()), upper)  # type: ignore[arg-type]
+    second = second_moments(upper)  # type: ignore[arg-type]
+    moments = Moments(mass, tuple((mass * center).tolist()), second)  # type: ignore[arg-type]
     joint = Revolute("j", ("ground", "b"))
     return Link("b", -1, joint, True, Rotation(), ZERO, Place(), moments)
 

@@ -55,11 +55,31 @@ class Motion(NamedTuple):
 
 
 class Moments(NamedTuple):
-    """The mass distribution of a body: mass, first moment and inertia about an origin, in its axes."""
+    """The mass distribution of a body about an origin, in its axes: m, ∫ r dm and ∫ r r^T dm.
+
+    The second moments S are carried from frame to frame with fewer operations than the inertia tensor
+    J = tr(S) 1 - S, and what an acceleration field does to a body is linear in them.
+    """
 
     mass: Scalar
     first: Vector
-    inertia: Inertia
+    second: Inertia
+
+    @property
+    def inertia(self) -> Inertia:
+        """J about the origin."""
+        xx, xy, xz, yy, yz, zz = self.second
+        return (yy + zz, -xy, -xz, xx + zz, -yz, xx + yy)
+
+
+NO_MOMENTS = Moments(0, ZERO, (0, 0, 0, 0, 0, 0))
+
+
+def second_moments(inertia: Inertia) -> Inertia:
+    """``S = tr(J) / 2 - J``; of a planar body, whose J has no more than zz, S is what gives that zz."""
+    xx, xy, xz, yy, yz, zz = inertia
+    half = (xx + yy + zz) / 2
+    return (half - xx, -xy, -xz, half - yy, -yz, half - zz)
 
 
 class Along(NamedTuple):
@@ -141,6 +161,10 @@ class Joint:
     start: Any = None
 
     kind: ClassVar[str]
+    turns: ClassVar[bool] = False
+    """Whether all it does is turn about z, so that turning its frames about z only shifts its angle."""
+    slides: ClassVar[tuple[int, ...]] = ()
+    """The axes along which its two frames may be shifted together: its motion stays the same."""
 
     @property
     def freedoms(self) -> int:
@@ -208,7 +232,7 @@ class Joint:
 
     def regroup(self, head: Moments) -> tuple[Moments, Moments]:
         """Split the head body's moments into (kept, handed to the tail body) with the same M and h."""
-        return head, Moments(0, ZERO, (0, 0, 0, 0, 0, 0))
+        return head, NO_MOMENTS
 
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
         """Its reaction directions in aligned axes: 6 less its freedoms.
@@ -258,12 +282,11 @@ def angle_about_z(algebra: Algebra, rotation: Matrix) -> Scalar:
 
 def point_apart(head: Moments) -> tuple[Moments, Moments]:
     """The mass as a point at the origin, handed over: for joints whose frames have their origin in common."""
-    kept = Moments(0, head.first, head.inertia)
-    return kept, Moments(head.mass, ZERO, (0, 0, 0, 0, 0, 0))
+    return Moments(0, head.first, head.second), Moments(head.mass, ZERO, (0, 0, 0, 0, 0, 0))
 
 
 def round_apart(head: Moments) -> tuple[Moments, Moments]:
-    """The inertia diag(yy, yy, 0), handed over: for joints whose frames have the direction of z in common."""
-    xx, xy, xz, yy, yz, zz = head.inertia
-    kept = Moments(head.mass, head.first, (xx - yy, xy, xz, 0, yz, zz))
-    return kept, Moments(0, ZERO, (yy, 0, 0, yy, 0, 0))
+    """The spread along z, handed over: for joints whose frames have the direction of z in common."""
+    *others, zz = head.second
+    kept = Moments(head.mass, head.first, (*others, 0))  # type: ignore[arg-type]
+    return kept, Moments(0, ZERO, (0, 0, 0, 0, 0, zz))

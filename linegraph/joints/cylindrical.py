@@ -36,6 +36,7 @@ class Cylindrical(Joint):
 
     kind = "cylindrical"
     freedoms = 2
+    slides = (2,)
 
     def positions(self) -> tuple[Quantity, ...]:
         """The angle and the displacement."""

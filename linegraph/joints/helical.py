@@ -47,6 +47,7 @@ class Helical(Joint):
     lead: Any = None
     kind = "helical"
     freedoms = 1
+    slides = (2,)
 
     def __post_init__(self) -> None:
         """Raises `ModelError` where there is no lead or it is not finite."""

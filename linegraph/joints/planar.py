@@ -38,6 +38,7 @@ class Planar(Joint):
 
     kind = "planar"
     freedoms = 3
+    slides = (2,)
 
     def positions(self) -> tuple[Quantity, ...]:
         """x, y and the angle."""

@@ -32,6 +32,7 @@ class Prismatic(Joint):
 
     kind = "prismatic"
     freedoms = 1
+    slides = (0, 1, 2)
 
     def positions(self) -> tuple[Quantity, ...]:
         """The displacement."""
@@ -52,7 +53,7 @@ class Prismatic(Joint):
     def regroup(self, head: Moments) -> tuple[Moments, Moments]:
         """Hand over the inertia tensor: head and tail turn alike."""
         kept = Moments(head.mass, head.first, (0, 0, 0, 0, 0, 0))
-        return kept, Moments(0, ZERO, head.inertia)
+        return kept, Moments(0, ZERO, head.second)
 
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
         """No shift but along the axis, no turn."""

@@ -33,6 +33,8 @@ class Revolute(Joint):
 
     kind = "revolute"
     freedoms = 1
+    turns = True
+    slides = (2,)
 
     def positions(self) -> tuple[Quantity, ...]:
         """The angle."""
@@ -52,15 +54,15 @@ class Revolute(Joint):
         return Motion(Rotation((turn,)), ZERO, ((0, 0, 1),), (ZERO,))
 
     def regroup(self, head: Moments) -> tuple[Moments, Moments]:
-        """Hand over what is symmetric about the axis and has no inertia about it.
+        """Hand over what could as well lie on the axis.
 
-        The mass as a point on the axis, the first moment along it and yy of diag(1, 1, 0) look the same
+        The mass as a point on the axis, its first moment along it and its spread along it look the same
         from the tail body at every angle (Khalil's base parameters).
         """
         x, y, z = head.first
-        xx, xy, xz, yy, yz, zz = head.inertia
-        kept = Moments(0, (x, y, 0), (xx - yy, xy, xz, 0, yz, zz))
-        return kept, Moments(head.mass, (0, 0, z), (yy, 0, 0, yy, 0, 0))
+        *others, zz = head.second
+        kept = Moments(0, (x, y, 0), (*others, 0))  # type: ignore[arg-type]
+        return kept, Moments(head.mass, (0, 0, z), (0, 0, 0, 0, 0, zz))
 
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
         """No shift, no turn but about the axis."""

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from linegraph.joints import JOINTS, Moments
-from linegraph.kinematics import carried
+from linegraph.joints import JOINTS
 from linegraph.model import Model
-from linegraph.rotation import Rotation
 from linegraph.urdf.mimics import Followers, followers_of
 from linegraph.urdf.report import Report, named
 from linegraph.urdf.stems import MOMENTS, OFFSETS, stems
-from linegraph.vector import ZERO
 from linegraph.words import BodyHandle
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from linegraph.rotation import Inertia
     from linegraph.urdf.joints import Joint
     from linegraph.urdf.links import Inertial, Link
     from linegraph.urdf.structure import Tree
+    from linegraph.vector import Vector
 
 ROOT = "root"
 """The free joint above the root link of a floating robot."""
@@ -172,6 +171,16 @@ class _Symbolic:
         ]
 
 
-def moments_of(inertial: Inertial) -> Moments:
+def moments_of(inertial: Inertial) -> tuple[float, Vector, Inertia]:
     """Mass, first moment and inertia about the origin of the link's frame."""
-    return carried(Moments(inertial.mass, ZERO, inertial.tensor), Rotation(), inertial.center)
+    m, (x, y, z) = inertial.mass, inertial.center
+    xx, xy, xz, yy, yz, zz = inertial.tensor
+    about = (
+        xx + m * (y * y + z * z),
+        xy - m * x * y,
+        xz - m * x * z,
+        yy + m * (x * x + z * z),
+        yz - m * y * z,
+        zz + m * (x * x + y * y),
+    )
+    return m, (m * x, m * y, m * z), about

@@ -1,0 +1,300 @@
+"""Working frames in which the equations of motion are shortest.
+
+About and along its joint's axis a link's working frame may stand where one likes: the motion stays the
+same. So it is
+
+    turned   until the constant rotation to a child, or the way to it, needs fewer components;
+    slid     until as many components of the arms as can be are zero;
+    still    in a run of parallel axes: its axes do not turn with the link, and sine and cosine of sums
+             of angles take the place of products of rotations;
+
+and the moments that a parent can carry are handed to it. M, h, inverse and forward dynamics stay the same;
+reactions do not, so everything that speaks of single bodies keeps the frames of the walk.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+from linegraph import vector
+from linegraph.body import Placement
+from linegraph.joints import Moments
+from linegraph.kinematics import KinematicTree, Link, carried
+from linegraph.orthogonality import parallel
+from linegraph.rotation import IDENTITY_MATRIX, Rotation, Turn, product, rotation_of, snapped
+from linegraph.vector import ZERO, Matrix, Vector, add, cross, subtract
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from linegraph.orthogonality import Arm
+
+DUST = 4e-15
+"""Rounding of a product of constant rotations."""
+
+WELL_APART = 0.1
+"""Axes closer to parallel than this sine of the angle between them, or a direction closer to normal, do not
+say where to turn or how far to slide: digits would be lost."""
+
+SWEEPS = 3
+"""A frame that is slid moves the arms on both sides, so the links are gone through more than once."""
+
+
+class Shortened(NamedTuple):
+    """A tree in its shortest working frames.
+
+    Attributes:
+        tree: the links; what it says of bodies and ends holds for the frames of the walk only.
+        poses: each link's working frame in the one of the walk.
+    """
+
+    tree: KinematicTree
+    poses: tuple[Placement, ...]
+
+    def rehoused(
+        self, wrenches: Iterable[tuple[Vector, Vector]], crossed: Sequence[Arm]
+    ) -> list[tuple[Vector, Vector]]:
+        """Forces and torques given in the frames of the walk, in and about those of the tree."""
+        found = []
+        for (force, torque), pose, arm in zip(wrenches, self.poses, crossed, strict=True):
+            turned = rotation_of(pose.rotation)
+            about = subtract(torque, cross(pose.at, force))
+            found.append((arm.turn.out(turned.into(force)), arm.turn.out(turned.into(about))))
+        return found
+
+
+def shortened(tree: KinematicTree) -> Shortened:
+    """The same M and h in fewer operations."""
+    if tree.levelled:
+        # angles measured from ground leave no choice
+        return Shortened(tree.regrouped(), (Placement(ZERO, IDENTITY_MATRIX),) * len(tree.links))
+    children = _children(tree.links)
+    links, turns = _turned(list(tree.links), children)
+    links, shifts = _slid(links, children)
+    poses = tuple(
+        Placement(rotation_of(turn).out(shift), turn)
+        for turn, shift in zip(turns, shifts, strict=True)
+    )
+    short = replace(tree, links=tuple(links)).regrouped()
+    stilled = tuple(
+        replace(link, still=_run_goes_on(link, [short.links[c] for c in children[i]]))
+        for i, link in enumerate(short.links)
+    )
+    return Shortened(replace(short, links=stilled), poses)
+
+
+def _children(links: Sequence[Link]) -> list[list[int]]:
+    found: list[list[int]] = [[] for _ in links]
+    for i, link in enumerate(links):
+        if link.parent >= 0:
+            found[link.parent].append(i)
+    return found
+
+
+def _run_goes_on(link: Link, children: Sequence[Link]) -> bool:
+    """Whether a link's axis is that of all links it carries, so that none needs axes that turn with it."""
+    return link.joint.turns and bool(children) and all(parallel(child) for child in children)
+
+
+def _weights(links: Sequence[Link]) -> list[int]:
+    """About what a component of an arm costs: motion, forces and moments, and each column of M it is on."""
+    columns = [len(link.velocities) for link in links]
+    for i in reversed(range(len(links))):
+        if links[i].parent >= 0:
+            columns[links[i].parent] += columns[i]
+    return [18 + 4 * n if link.parent >= 0 else 0 for n, link in zip(columns, links, strict=True)]
+
+
+def _numeric(link: Link) -> bool:
+    """Whether all that is constant of a link is made of numbers."""
+    entries = (*link.at, *(x for row in link.rotation.matrix() for x in row))
+    return link.numeric and all(isinstance(x, (int, float)) for x in entries)
+
+
+# turning
+
+
+def _turned(
+    links: list[Link], children: Sequence[Sequence[int]]
+) -> tuple[list[Link], list[Matrix]]:
+    """Turn working frames about their joints' axes; the angles of the joints make up for it."""
+    weights = _weights(links)
+    turns: list[Matrix] = [IDENTITY_MATRIX] * len(links)
+    for i, link in enumerate(links):
+        carried_by = [links[c] for c in children[i]]
+        free = link.joint.turns and all(map(_numeric, (link, *carried_by)))
+        if free and carried_by:
+            costs = [weights[c] for c in children[i]]
+            angle = min(
+                _candidates(carried_by), key=lambda b: round(_cost(b, carried_by, costs), 6)
+            )
+            turns[i] = _about_z(angle)
+            if angle:
+                link = replace(link, moments=_seen_turned(link.moments, turns[i]))
+                links[i] = _angle_shifted(link, angle)
+        back = vector.transpose(turns[i])
+        for c in children[i]:
+            if _numeric(links[c]):
+                links[c] = _seen_from(links[c], back)
+    for i, link in enumerate(links):
+        if link.parent < 0 and _numeric(link):
+            links[i] = _seen_from(link, IDENTITY_MATRIX)
+    return links, turns
+
+
+def _candidates(children: Sequence[Link]) -> list[float]:
+    """Angles about z that may make a child's rotation or arm simpler; no angle first."""
+    found = [0.0]
+    for child in children:
+        m = child.rotation.matrix()
+        if any(x not in (0, 1, -1) for row in m for x in row) and _apart(m):
+            found.append(math.atan2(m[0][2], -m[1][2]))
+        if child.at[0] != 0 and child.at[1] != 0:
+            found.append(math.atan2(child.at[1], child.at[0]))
+    return found
+
+
+def _cost(angle: float, children: Sequence[Link], weights: Sequence[int]) -> float:
+    """What rotations and arms of the children cost in axes turned by an angle."""
+    back = vector.transpose(_about_z(angle))
+    total = 0.0
+    for child, weight in zip(children, weights, strict=True):
+        seen = _seen_from(child, back)
+        turns = sum(isinstance(factor, Turn) for factor in seen.rotation.factors)
+        total += weight * (3 * turns + sum(x != 0 for x in seen.at))
+    return total
+
+
+def _seen_from(link: Link, back: Matrix) -> Link:
+    """A link whose parent's axes are turned: `back` takes old components to new ones."""
+    m = product(back, link.rotation.matrix()) if back != IDENTITY_MATRIX else None
+    at = link.at if m is None else _swept(vector.times(back, link.at), link.at)
+    m = snapped(m if m is not None else link.rotation.matrix(), DUST)
+    rotation = rotation_of(m)
+    constant = all(x in (0, 1, -1) for row in m for x in row)
+    if constant or not (_apart(m) or parallel(link)) or not _many(rotation, link):
+        return replace(link, rotation=rotation, at=at)
+    outer, middle, inner = _angles(m)
+    factors = [_about_z(outer), _about_x(middle)]
+    if link.joint.turns:
+        link = _angle_shifted(link, inner)
+    else:
+        factors.append(_about_z(inner))
+    parts = [f for matrix in factors for f in rotation_of(snapped(matrix, DUST)).factors]
+    return replace(link, rotation=Rotation(tuple(parts)), at=at)
+
+
+def _apart(m: Matrix) -> bool:
+    """Whether a rotation's z is far enough from its own to say where they are in one plane."""
+    return bool(math.hypot(m[2][0], m[2][1]) > WELL_APART)
+
+
+def _many(rotation: Rotation, link: Link) -> bool:
+    """Whether a constant rotation could be cheaper: a turn about z is none where the joint turns anyway."""
+    (factor,) = rotation.factors
+    return not isinstance(factor, Turn) or (factor.axis == 2 and link.joint.turns)
+
+
+def _angles(m: Matrix) -> tuple[float, float, float]:
+    """The angles of ``m = Rz(outer) Rx(middle) Rz(inner)``."""
+    if not _apart(m):
+        sign = 1 if m[2][2] > 0 else -1
+        return 0.0, 0.0 if sign > 0 else math.pi, math.atan2(sign * m[1][0], m[0][0])
+    middle = math.atan2(math.hypot(m[2][0], m[2][1]), m[2][2])
+    return math.atan2(m[0][2], -m[1][2]), middle, math.atan2(m[2][0], m[2][1])
+
+
+def _about_z(angle: float) -> Matrix:
+    c, s = math.cos(angle), math.sin(angle)
+    return snapped(((c, -s, 0), (s, c, 0), (0, 0, 1)), DUST)
+
+
+def _about_x(angle: float) -> Matrix:
+    c, s = math.cos(angle), math.sin(angle)
+    return snapped(((1, 0, 0), (0, c, -s), (0, s, c)), DUST)
+
+
+def _angle_shifted(link: Link, angle: float) -> Link:
+    """A link whose joint's far frame is turned by an angle, or whose near frame by the opposite one."""
+    place = link.place
+    shift = angle if link.forward else -angle
+    if place.drive:
+        (jet,) = place.drive
+        moved = replace(place, drive=(replace(jet, x=jet.x + shift),))
+    else:
+        (freedom,) = place.positions
+        moved = replace(place, positions=(replace(freedom, offset=freedom.offset + shift),))
+    return replace(link, place=moved)
+
+
+def _seen_turned(moments: Moments, turn: Matrix) -> Moments:
+    """Moments in axes that are turned."""
+    return carried(moments, rotation_of(vector.transpose(turn)), ZERO)
+
+
+def _swept(turned: Vector, original: Vector) -> Vector:
+    """Drop rounding dust where an exact zero belongs."""
+    scale = max(abs(x) for x in original)
+    x, y, z = (0 if abs(c) <= DUST * scale else c for c in turned)
+    return (x, y, z)
+
+
+# sliding
+
+
+def _slid(links: list[Link], children: Sequence[Sequence[int]]) -> tuple[list[Link], list[Vector]]:
+    """Slide origins along their joints' axes."""
+    weights = _weights(links)
+    shifts = [ZERO] * len(links)
+    for _ in range(SWEEPS):
+        for i in reversed(range(len(links))):
+            carried_by = [links[c] for c in children[i]]
+            if not (links[i].joint.slides and all(map(_numeric, (links[i], *carried_by)))):
+                continue
+            costs = [weights[c] for c in children[i]]
+            for axis in links[i].joint.slides:
+                shift = _best_shift(links[i], carried_by, weights[i], costs, axis)
+                if shift == ZERO:
+                    continue
+                links[i] = _moved_origin(links[i], shift)
+                carried_by = [_seen_shifted(child, shift) for child in carried_by]
+                shifts[i] = add(shifts[i], shift)
+            for c, child in zip(children[i], carried_by, strict=True):
+                links[c] = child
+    return links, shifts
+
+
+def _best_shift(
+    link: Link, children: Sequence[Link], weight: int, weights: Sequence[int], axis: int
+) -> Vector:
+    """The shift along an axis of a link's frame that leaves its arm and its children's the cheapest."""
+    along = link.rotation.out(IDENTITY_MATRIX[axis])
+    found = [0.0]
+    given = zip(link.at, along, strict=True)
+    found += [-x / d for x, d in given if x != 0 and abs(d) > WELL_APART]
+    found += [child.at[axis] for child in children if child.at[axis] != 0]
+
+    def cost(s: float) -> float:
+        shift = vector.scale(s, IDENTITY_MATRIX[axis])
+        own = _moved_origin(link, shift)
+        arms = [own.at, *(_seen_shifted(child, shift).at for child in children)]
+        total = sum(
+            w * sum(x != 0 for x in at) for w, at in zip((weight, *weights), arms, strict=True)
+        )
+        return total + 4 * sum(own.moments.second[k] != 0 for k in (2, 4))
+
+    return vector.scale(min(found, key=cost), IDENTITY_MATRIX[axis])
+
+
+def _moved_origin(link: Link, shift: Vector) -> Link:
+    """A link with its origin shifted, both on its near and on its far side."""
+    at = _swept(add(link.at, link.rotation.out(shift)), link.at)
+    moments = carried(link.moments, Rotation(), vector.negate(shift))
+    return replace(link, at=at, moments=moments)
+
+
+def _seen_shifted(link: Link, shift: Vector) -> Link:
+    """A link whose parent's origin is shifted."""
+    return replace(link, at=_swept(subtract(link.at, shift), link.at))
