@@ -7,36 +7,39 @@ its near link has, it adds for all that it carries, so its inertia force is that
 
 with w, u the joint's relative velocities, σ the sum of the angular velocities on its two sides and β, β' the
 rest of its relative acceleration. Of a hinge ΔA has three entries: points on its axis move with both links.
-A joint's h is then what the whole field at it does to its composite, and what the joints beyond add.
+A joint's h is then what the near link's field does to its composite, and what it and the joints beyond add.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph import vector
+from linegraph.joints import Moments, Motion
 from linegraph.mass_matrix import composites
 from linegraph.orthogonality import (
+    Crossing,
+    Spin,
+    accelerated,
     applied_to,
     caption,
-    crossing,
+    crossed_with,
     d_alembert,
-    gathered,
     projection,
+    resting,
     set_label,
     spins,
 )
+from linegraph.rotation import Inertia, Rotation
 from linegraph.vector import Vector, add, cross
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from linegraph.algebra import Algebra
-    from linegraph.joints import Moments
     from linegraph.kinematics import KinematicTree
     from linegraph.loads import Applied
     from linegraph.orthogonality import Arm
-    from linegraph.rotation import Inertia
     from linegraph.vector import Matrix, Scalar
 
 Wrench = tuple[Vector, Vector]
@@ -47,7 +50,7 @@ def bias_beside_mass(
 ) -> list[Scalar]:
     """h(q, v), less what `acting` does; the composites are those of `mass_matrix`."""
     carried = composites(tree, algebra, list(crossed))
-    motions = spins(tree, algebra, crossed, None)
+    motions = spins(tree, algebra, crossed)
     total: list[Scalar] = [-effort for effort in acting.efforts]
     beyond: list[Wrench] = [
         (vector.negate(force), vector.negate(torque)) for force, torque in acting.wrenches
@@ -55,24 +58,71 @@ def bias_beside_mass(
     for i in reversed(range(len(tree.links))):
         link, arm = tree.links[i], crossed[i]
         set_label(algebra, f"forces, {caption(link)}")
-        force, torque = beyond[i]
-        whole = d_alembert(carried[i], motions[i])
+        near = motions[link.parent] if link.parent >= 0 else resting(tree)
+        here = _at_joint(arm, near, carried[i])
+        whole = d_alembert(here.carried, here.field)
+        own = _added(here.carried, crossed_with(arm, here.motion, here.field.velocity))
         for a, freedom in enumerate(link.velocities):
-            entry = projection(arm.motion, a, *whole) + projection(arm.motion, a, force, torque)
+            entry = projection(here.motion, a, *_sum(whole, own))
+            entry = entry + projection(arm.motion, a, *beyond[i])
             total[freedom.index] = total[freedom.index] + freedom.ratio * entry
         if link.parent >= 0:
-            near = motions[link.parent].velocity
-            own = _added(carried[i], arm, near)
-            force, torque = gathered(arm, add(force, own[0]), add(torque, own[1]))
-            outer = beyond[link.parent]
-            beyond[link.parent] = (add(outer[0], force), add(outer[1], torque))
+            force, torque = here.seen_near(beyond[i], own)
+            passed = (force, add(torque, cross(arm.at, force)))
+            beyond[link.parent] = _sum(beyond[link.parent], passed)
     return total
 
 
-def _added(composite: Moments, arm: Arm, near: Vector) -> Wrench:
+class _Joint(NamedTuple):
+    """What is known at a joint, in one set of axes and about its far link's origin.
+
+    Attributes:
+        motion: the joint's.
+        carried: the composite beyond it.
+        field: how the near link's points move there.
+        rotation: far axes to near axes.
+        near: whether the axes are the near link's; else they are the far link's.
+    """
+
+    motion: Motion
+    carried: Moments
+    field: Spin
+    rotation: Rotation
+    near: bool
+
+    def seen_near(self, far: Wrench, own: Wrench) -> Wrench:
+        """The sum of a wrench in far axes and one in the joint's, in near axes."""
+        out = self.rotation.out
+        if self.near:
+            return _sum((out(far[0]), out(far[1])), own)
+        force, torque = _sum(far, own)
+        return out(force), out(torque)
+
+
+def _at_joint(arm: Arm, near: Spin, composite: Moments) -> _Joint:
+    """A joint in near axes where its directions are constant there: a link at the end needs no others."""
+    pull = add(near.linear, accelerated(near, arm.at))
+    rotation, motion = arm.rotation, arm.motion
+    seen = Motion(
+        motion.rotation,
+        motion.displacement,
+        tuple(rotation.out(s) for s in motion.angular),
+        tuple(rotation.out(u) for u in motion.linear),
+        rotation.out(motion.angular_bias),
+        rotation.out(motion.linear_bias),
+    )
+    if all(isinstance(x, (int, float)) for s in (*seen.angular, *seen.linear) for x in s):
+        mass, first, second = composite
+        turned = Moments(mass, rotation.out(first), rotation.congruence(second))
+        return _Joint(seen, turned, near._replace(linear=pull), rotation, near=True)
+    into = rotation.into
+    field = Spin(into(near.velocity), into(near.angular), into(pull))
+    return _Joint(motion, composite, field, rotation, near=False)
+
+
+def _added(composite: Moments, here: Crossing) -> Wrench:
     """Force and torque about a link's origin of what its joint adds to the accelerations beyond it."""
     mass, first, second = composite
-    here = crossing(arm, near)
     w, sums = here.turning, add(here.before, here.velocity)
     field = _turning(w, sums)
     force = add(vector.scale(mass, here.linear), cross(here.angular, first))
@@ -80,6 +130,10 @@ def _added(composite: Moments, arm: Arm, near: Vector) -> Wrench:
     about_one_axis = sum(x != 0 for x in w) == 1
     gyroscopic = _axial(field, second) if about_one_axis else cross(applied_to(second, sums), w)
     return add(force, vector.times(field, first)), add(torque, gyroscopic)
+
+
+def _sum(a: Wrench, b: Wrench) -> Wrench:
+    return add(a[0], b[0]), add(a[1], b[1])
 
 
 def _turning(w: Vector, sums: Vector) -> Matrix:

@@ -8,7 +8,7 @@ rotated and shifted mass distributions.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -44,6 +44,8 @@ class Link:
         place: where the joint's q and v come from.
         moments: mass distribution about the joint's own origin and in axes that turn with the link.
         still: whether the working axes do not turn with the link but stay those of the joint's near side.
+        in_plane: whether the link never turns but about its own z; xx then holds its inertia about z, and
+            that is all it holds of second moments.
     """
 
     name: str
@@ -55,6 +57,7 @@ class Link:
     place: Place
     moments: Moments
     still: bool = False
+    in_plane: bool = False
 
     @property
     def velocities(self) -> tuple[Freedom, ...]:
@@ -180,6 +183,7 @@ class KinematicTree:
         the sums would be computed anew at every call.
         """
         links = list(self.links)
+        in_plane = _in_plane(links)
         for i in reversed(range(len(links))):
             link = links[i]
             parent = links[link.parent] if link.parent >= 0 else None
@@ -189,11 +193,32 @@ class KinematicTree:
             # of a link that does not turn with its parent only the mass can be handed over
             split = point_apart if link.place.level else link.joint.regroup
             kept, handed = split(link.moments)
-            links[i] = replace(link, moments=kept)
+            if in_plane[i]:
+                kept = kept._replace(second=(kept.inertia[5], 0, 0, 0, 0, 0))
+            links[i] = replace(link, moments=kept, in_plane=in_plane[i])
             if parent is not None:
                 shifted = carried(handed, link.rotation, link.at)
                 links[link.parent] = replace(parent, moments=joined(parent.moments, shifted))
         return replace(self, links=tuple(links))
+
+
+def _in_plane(links: Sequence[Link]) -> list[bool]:
+    """Whether a link never turns but about its own z, since all joints inward turn about that direction."""
+    still: list[bool] = []
+    found: list[bool] = []
+    for link in links:
+        outer = link.parent
+        at_rest = outer < 0 or still[outer]
+        free = not (link.place.level or link.place.drive)
+        slides = len(link.joint.slides) == 3
+        still.append(at_rest and slides and free)
+        found.append(link.joint.turns and free and (at_rest or (found[outer] and parallel(link))))
+    return found
+
+
+def parallel(link: Link) -> bool:
+    """Whether a link turns about the direction of its parent's z, either way round."""
+    return link.joint.turns and link.rotation.out((0, 0, 1)) in ((0, 0, 1), (0, 0, -1))
 
 
 def carried(moments: Moments, rotation: Rotation, at: Vector) -> Moments:
@@ -210,14 +235,33 @@ def carried(moments: Moments, rotation: Rotation, at: Vector) -> Moments:
         m,
         first,
         (
-            xx + at[0] * (b[0] + first[0]),
+            xx + _spread(at[0], b[0], first[0]),
             xy + (at[0] * b[1] + at[1] * first[0]),
             xz + (at[0] * b[2] + at[2] * first[0]),
-            yy + at[1] * (b[1] + first[1]),
+            yy + _spread(at[1], b[1], first[1]),
             yz + (at[1] * b[2] + at[2] * first[1]),
-            zz + at[2] * (b[2] + first[2]),
+            zz + _spread(at[2], b[2], first[2]),
         ),
     )
+
+
+def carried_in_plane(moments: Moments, rotation: Rotation, at: Vector) -> Moments:
+    """The same where only the inertia about z counts, on both sides: ``J + 2 at . b + m at . at``."""
+    b = rotation.out(moments.first)
+    first = vector.add(b, vector.scale(moments.mass, at))
+    about = moments.inertia[5]
+    if moments.mass == 0:
+        about = about + 2 * (at[0] * b[0] + at[1] * b[1])
+    else:
+        about = about + (at[0] * (b[0] + first[0]) + at[1] * (b[1] + first[1]))
+    return Moments(moments.mass, first, (about, 0, 0, 0, 0, 0))
+
+
+def _spread(at: Scalar, inner: Scalar, outer: Scalar) -> Scalar:
+    """``at (inner + outer)``; without mass the two are one, and their product with an arm is of use elsewhere."""
+    if inner is not outer or isinstance(at, (int, float)):
+        return at * (inner + outer)
+    return 2 * (at * inner)
 
 
 def joined(a: Moments, b: Moments) -> Moments:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from linegraph import vector
 from linegraph.joints import Moments
 from linegraph.joints.base import NO_MOMENTS
-from linegraph.kinematics import KinematicTree, carried, joined
+from linegraph.kinematics import KinematicTree, carried, carried_in_plane, joined
 from linegraph.layout import Freedom
 from linegraph.orthogonality import Arm, applied_to, caption, gathered, projection, set_label
 from linegraph.rotation import IDENTITY_MATRIX, Full, Relabel, Turn
@@ -133,7 +133,9 @@ def composites(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> lis
             if crossed[i].level:
                 # what turns against ground moves with its parent like a point
                 carry = NO_MOMENTS._replace(mass=carry.mass)
-            seen = carried(carry, crossed[i].rotation, crossed[i].at)
+            in_plane = link.in_plane and tree.links[link.parent].in_plane
+            carry_over = carried_in_plane if in_plane else carried
+            seen = carry_over(carry, crossed[i].rotation, crossed[i].at)
             moments[link.parent] = joined(moments[link.parent], seen)
     return moments
 

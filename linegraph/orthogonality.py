@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph import vector
 from linegraph.joints import Moments, Motion
+from linegraph.kinematics import parallel
 from linegraph.layout import coordinates, own_rates
 from linegraph.rotation import Full, Rotation, Turn
 from linegraph.vector import ZERO, Scalar, Vector, add, cross, dot, subtract
@@ -112,13 +113,8 @@ def _in_a_run(algebra: Algebra, link: Link, arm: Arm, found: Sequence[Arm], angl
     if not link.still:
         return arm._replace(rotation=rotation @ turn)
     mass, first, second = arm.moments
-    seen = Moments(mass, turn.out(first), turn.congruence(second))
+    seen = Moments(mass, turn.out(first), second if link.in_plane else turn.congruence(second))
     return arm._replace(rotation=rotation, moments=seen, turn=turn, angle=angle)
-
-
-def parallel(link: Link) -> bool:
-    """Whether a link turns about the direction of its parent's z, either way round."""
-    return link.joint.turns and link.rotation.out((0, 0, 1)) in ((0, 0, 1), (0, 0, -1))
 
 
 def _against_parent(
@@ -262,14 +258,14 @@ def spins(
     Gravity enters as the acceleration -g of ground.
     """
     a = None if acceleration is None else tuple(acceleration)
-    ground = Spin(ZERO, ZERO, vector.negate(tree.gravity))
+    ground = resting(tree)
     found: list[Spin] = []
     for link, arm in zip(tree.links, crossed, strict=True):
         set_label(algebra, f"motion, {caption(link)}")
         near = found[link.parent] if link.parent >= 0 else ground
         here = crossing(arm, near.velocity)
         angular = here.spin if arm.level else add(arm.rotation.into(near.angular), here.spin)
-        pull = add(near.linear, _accelerated(near, arm.at))
+        pull = add(near.linear, accelerated(near, arm.at))
         linear = add(arm.rotation.into(pull), here.linear)
         if a is not None and link.velocities:
             own = tuple(f.ratio * a[f.index] for f in link.velocities)
@@ -277,6 +273,11 @@ def spins(
             linear = add(linear, vector.combine(own, arm.motion.linear))
         found.append(Spin(here.velocity, angular, linear))
     return found
+
+
+def resting(tree: KinematicTree) -> Spin:
+    """How ground moves: gravity enters as its acceleration -g."""
+    return Spin(ZERO, ZERO, vector.negate(tree.gravity))
 
 
 class Crossing(NamedTuple):
@@ -306,14 +307,18 @@ class Crossing(NamedTuple):
 
 
 def crossing(arm: Arm, near: Vector) -> Crossing:
-    """How a joint is crossed whose near link has this angular velocity."""
-    motion = arm.motion
-    w = vector.combine(arm.rates, motion.angular)
+    """How a joint is crossed whose near link has this angular velocity, in the far link's axes."""
     if arm.level:
         # such joints have no shift: their origin moves with the near link alone
-        return Crossing(ZERO, w, motion.angular_bias, ZERO)
+        w = vector.combine(arm.rates, arm.motion.angular)
+        return Crossing(ZERO, w, arm.motion.angular_bias, ZERO)
+    return crossed_with(arm, arm.motion, arm.rotation.into(near))
+
+
+def crossed_with(arm: Arm, motion: Motion, before: Vector) -> Crossing:
+    """The same with the joint's motion and the near link's angular velocity in any axes."""
+    w = vector.combine(arm.rates, motion.angular)
     u = vector.combine(arm.rates, motion.linear)
-    before = arm.rotation.into(near)
     angular = motion.angular_bias
     # Coriolis: the relative velocity u turns with the near link (twice) and with the joint
     linear = add(cross(add(add(before, w), before), u), motion.linear_bias)
@@ -337,7 +342,7 @@ def bias_accelerations(
         near = velocities[link.parent] if link.parent >= 0 else ZERO
         crossed_here = crossing(arm, near)
         turning = Spin(near, ZERO, ZERO)
-        pull = _accelerated(turning, arm.at)
+        pull = accelerated(turning, arm.at)
         if link.parent < 0:
             pull = vector.subtract(pull, tree.gravity)
         velocities.append(crossed_here.velocity)
@@ -350,7 +355,7 @@ def bias_force(moments: Moments, velocity: Vector) -> tuple[Vector, Vector]:
     _, first, second = moments
     # ω x J ω: what of J is isotropic does not show
     torque = cross(applied_to(second, velocity), velocity)
-    return torque, _accelerated(Spin(velocity, ZERO, ZERO), first)
+    return torque, accelerated(Spin(velocity, ZERO, ZERO), first)
 
 
 def _products(w: Vector) -> Inertia:
@@ -359,7 +364,7 @@ def _products(w: Vector) -> Inertia:
     return (x * x, x * y, x * z, y * y, y * z, z * z)
 
 
-def _accelerated(spin: Spin, r: Vector) -> Vector:
+def accelerated(spin: Spin, r: Vector) -> Vector:
     """``U r`` with U = [ε x] + [ω x][ω x]: acceleration of a point r of a link, less its origin's."""
     xx, xy, xz, yy, yz, zz = _products(spin.velocity)
     x, y, z = spin.angular
@@ -377,7 +382,7 @@ def d_alembert(moments: Moments, spin: Spin) -> tuple[Vector, Vector]:
     written with the entries of U, which the force and the arms need anyway.
     """
     mass, first, second = moments
-    force = add(vector.scale(mass, spin.linear), _accelerated(spin, first))
+    force = add(vector.scale(mass, spin.linear), accelerated(spin, first))
     xx, xy, xz, yy, yz, zz = _products(spin.velocity)
     x, y, z = spin.angular
     sxx, sxy, sxz, syy, syz, szz = second

@@ -5,8 +5,8 @@ same. So it is
 
     turned   until the constant rotation to a child, or the way to it, needs fewer components;
     slid     until as many components of the arms as can be are zero;
-    still    in a run of parallel axes: its axes do not turn with the link, and sine and cosine of sums
-             of angles take the place of products of rotations;
+    still    at the end of a limb and in a run of parallel axes: its axes do not turn with the link, and
+             sine and cosine of sums of angles take the place of products of rotations;
 
 and the moments that a parent can carry are handed to it. M, h, inverse and forward dynamics stay the same;
 reactions do not, so everything that speaks of single bodies keeps the frames of the walk.
@@ -21,8 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from linegraph import vector
 from linegraph.body import Placement
 from linegraph.joints import Moments
-from linegraph.kinematics import KinematicTree, Link, carried
-from linegraph.orthogonality import parallel
+from linegraph.kinematics import KinematicTree, Link, carried, parallel
 from linegraph.rotation import IDENTITY_MATRIX, Rotation, Turn, product, rotation_of, snapped
 from linegraph.vector import ZERO, Matrix, Vector, add, cross, subtract
 
@@ -37,6 +36,9 @@ DUST = 4e-15
 WELL_APART = 0.1
 """Axes closer to parallel than this sine of the angle between them, or a direction closer to normal, do not
 say where to turn or how far to slide: digits would be lost."""
+
+FULL = 6
+"""Moments of a link, of the ten, from which on turning them costs less than turning what they cause."""
 
 SWEEPS = 3
 """A frame that is slid moves the arms on both sides, so the links are gone through more than once."""
@@ -94,8 +96,15 @@ def _children(links: Sequence[Link]) -> list[list[int]]:
 
 
 def _run_goes_on(link: Link, children: Sequence[Link]) -> bool:
-    """Whether a link's axis is that of all links it carries, so that none needs axes that turn with it."""
-    return link.joint.turns and bool(children) and all(parallel(child) for child in children)
+    """Whether a link's axis is that of all links it carries: none needs axes that turn with it.
+
+    One that carries none may as well be still, unless its own moments are so few that turning them would
+    make many of few.
+    """
+    few = sum(x != 0 for x in (*link.moments.first, *link.moments.second)) < FULL
+    if not children and few and not link.in_plane:
+        return False
+    return link.joint.turns and all(parallel(child) for child in children)
 
 
 def _weights(links: Sequence[Link]) -> list[int]:
