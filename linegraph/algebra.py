@@ -99,3 +99,9 @@ def _constant(function: str, x: Scalar) -> Scalar:
     import sympy
 
     return getattr(sympy, function)(x)
+
+
+def set_label(algebra: Algebra, text: str) -> None:
+    """Tell a DAG which part the next nodes belong to."""
+    if hasattr(algebra, "label"):
+        algebra.label = text

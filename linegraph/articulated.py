@@ -2,9 +2,11 @@
 
 H with a factorisation inside: on the way from the leaves to the root each joint's freedom is eliminated
 from what is passed on, so the parent sees only the inertia that cannot give way (Featherstone 1983).
-Seen from a link's origin, forces follow from accelerations by
+Seen from a link's origin, forces follow by
 
     n = A α + B a + n0        f = B^T α + C a + f0
+
+from the accelerations (α, a) that v̇ causes; what a link does at v̇ = 0 is in (n0, f0), gravity included.
 """
 
 from __future__ import annotations
@@ -12,9 +14,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph import vector
+from linegraph.algebra import set_label
 from linegraph.factorization import Solution
-from linegraph.orthogonality import Arm, bias_accelerations, bias_force, caption, set_label
-from linegraph.vector import Matrix, Scalar, Vector, add, cross, dot, subtract
+from linegraph.orthogonality import Arm, gathered
+from linegraph.spins import inertia_forces
+from linegraph.vector import ZERO, Matrix, Scalar, Vector, add, cross, dot, subtract
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -25,7 +29,7 @@ if TYPE_CHECKING:
     from linegraph.rotation import Inertia, Rotation
 
 Wrench = tuple[Vector, Vector]
-"""(torque about the origin, force)"""
+"""(force, torque about the origin)"""
 
 
 class Articulated(NamedTuple):
@@ -35,36 +39,47 @@ class Articulated(NamedTuple):
     b: Matrix
     c: Inertia
 
-    def apply(self, angular: Vector, linear: Vector) -> Wrench:
+    def apply(self, angular: Vector, linear: Vector) -> tuple[Vector, Vector]:
         """(n, f) of accelerations (α, a)."""
         b = self.b
         torque = add(_symmetric(self.a, angular), vector.times(b, linear))
         force = add(vector.times(vector.transpose(b), angular), _symmetric(self.c, linear))
         return torque, force
 
-    def without(self, torque: Vector, force: Vector, inverse: Scalar) -> Articulated:
-        """Less the part that one freedom yields: ``I - U U^T / D`` with U = (torque, force)."""
+    def without(self, freed: Freed) -> Articulated:
+        """Less the part that one freedom yields: ``I - U U^T / D`` with U = (torque, force).
+
+        What the rest does along that freedom is then exactly zero.
+        """
+        (torque, force), inverse = freed.response, freed.inverse
         n = vector.scale(inverse, torque)
         f = vector.scale(inverse, force)
         b = tuple(subtract(self.b[i], vector.scale(n[i], force)) for i in range(3))
+        rest = Articulated(_less(self.a, n, torque), b, _less(self.c, f, force))  # type: ignore[arg-type]
+        return rest if freed.along is None else rest.free_along(*freed.along)
+
+    def free_along(self, turn: int | None, shift: int | None) -> Articulated:
+        """With zeros where a coordinate axis is free to turn about, or to shift along."""
+        a, b, c = _square(self.a), self.b, _square(self.c)
+        if turn is not None:
+            a, b = _cleared(a, turn, rows=True, columns=True), _cleared(b, turn, rows=True)
+        if shift is not None:
+            c, b = _cleared(c, shift, rows=True, columns=True), _cleared(b, shift, columns=True)
+        return Articulated(_upper(a), b, _upper(c))
+
+    def turned(self, rotation: Rotation) -> Articulated:
+        """Seen in outer axes."""
         return Articulated(
-            _less(self.a, n, torque),
-            b,  # type: ignore[arg-type]
-            _less(self.c, f, force),
+            rotation.congruence(self.a), rotation.similarity(self.b), rotation.congruence(self.c)
         )
 
-    def carried(self, rotation: Rotation, at: Vector) -> Articulated:
-        """Seen from an outer origin and in outer axes."""
-        a, c = rotation.congruence(self.a), rotation.congruence(self.c)
-        rows = tuple(rotation.out(row) for row in self.b)
-        b = vector.transpose(
-            tuple(rotation.out(column) for column in vector.transpose(rows))  # type: ignore[arg-type]
-        )
-        outer = _plus(b, _crossed(at, _square(c)))
+    def shifted(self, at: Vector) -> Articulated:
+        """Seen from an outer origin."""
+        outer = _plus(self.b, _crossed(at, _square(self.c)))
         # A' = A + [r] B^T - B' [r], the last by rows: (x B'[r])_i = B'_i x r
-        moved = _plus(_square(a), _crossed(at, vector.transpose(b)))
+        moved = _plus(_square(self.a), _crossed(at, vector.transpose(self.b)))
         full = tuple(subtract(moved[i], cross(outer[i], at)) for i in range(3))
-        return Articulated(_upper(full), outer, c)  # type: ignore[arg-type]
+        return Articulated(_upper(full), outer, self.c)  # type: ignore[arg-type]
 
     def joined(self, other: Articulated) -> Articulated:
         """Two maps added."""
@@ -79,6 +94,23 @@ def rigid(moments: Moments) -> Articulated:
     return Articulated(moments.inertia, ((0, -z, y), (z, 0, -x), (-y, x, 0)), (m, 0, 0, m, 0, m))
 
 
+class Freed(NamedTuple):
+    """One freedom of a joint, eliminated.
+
+    Attributes:
+        response: torque and force that its unit acceleration asks for, in this order.
+        inverse: of the pivot.
+        net: what its effort leaves to accelerate it, divided by the pivot.
+        along: the coordinate axes it turns about and shifts along, where it is one and nothing moves with it
+            but the link.
+    """
+
+    response: tuple[Vector, Vector]
+    inverse: Scalar
+    net: Scalar
+    along: tuple[int | None, int | None] | None
+
+
 def forward_dynamics(
     tree: KinematicTree,
     algebra: Algebra,
@@ -90,71 +122,85 @@ def forward_dynamics(
 
     `armatures` are what moves with a velocity alone, as a rotor behind its gear does: they add to its pivot.
     """
-    size = len(tree.velocities)
-    beside = armatures or {}
-    pivots: list[Scalar] = [0] * size
-    inverse: list[Scalar] = [0] * size
-    net: list[Scalar] = [0] * size
-    spins, extra = bias_accelerations(tree, algebra, list(crossed))
+    pivots: list[Scalar] = [0] * len(tree.velocities)
     maps = [rigid(arm.moments) for arm in crossed]
-    wrenches = [bias_force(arm.moments, spin) for arm, spin in zip(crossed, spins, strict=True)]
-    responses: list[list[Wrench]] = [[] for _ in tree.links]
+    wrenches = inertia_forces(tree, algebra, crossed)
+    freed: list[list[Freed]] = [[] for _ in tree.links]
     for i in reversed(range(len(tree.links))):
         link, arm = tree.links[i], crossed[i]
-        set_label(algebra, f"articulated inertia, {caption(link)}")
-        body, (torque, force) = maps[i], wrenches[i]
-        given = body.apply(*extra[i])
-        torque, force = add(torque, given[0]), add(force, given[1])
+        set_label(algebra, f"articulated inertia, {link.caption}")
+        body, wrench = maps[i], wrenches[i]
         for a, freedom in enumerate(link.velocities):
-            s, u = arm.motion.angular[a], arm.motion.linear[a]
             k = freedom.index
-            n, f = body.apply(s, u)
-            pivots[k] = dot(s, n) + dot(u, f) + beside.get(k, 0)
-            inverse[k] = 1 / pivots[k]
-            net[k] = (efforts[k] - (dot(s, torque) + dot(u, force))) * inverse[k]
-            body = body.without(n, f, inverse[k])
-            torque = add(torque, vector.scale(net[k], n))
-            force = add(force, vector.scale(net[k], f))
-            responses[i].append((n, f))
+            beside = (armatures or {}).get(k, 0)
+            pivots[k], found = _free(body, wrench, arm, a, efforts[k], beside)
+            wrench = _passed_on(wrench, found, arm, a, efforts[k])
+            body = body.without(found)
+            freed[i].append(found)
         if link.parent >= 0:
-            force = arm.rotation.out(force)
-            torque = add(arm.rotation.out(torque), cross(arm.at, force))
             p = link.parent
-            maps[p] = maps[p].joined(body.carried(arm.rotation, arm.at))
-            wrenches[p] = (add(wrenches[p][0], torque), add(wrenches[p][1], force))
-    return Solution(_accelerations(tree, algebra, crossed, extra, responses, inverse, net), pivots)
+            maps[p] = maps[p].joined(body.turned(arm.rotation).shifted(arm.at))
+            wrench = gathered(arm, *wrench)
+            wrenches[p] = (add(wrenches[p][0], wrench[0]), add(wrenches[p][1], wrench[1]))
+    return Solution(_accelerations(tree, algebra, crossed, freed), pivots)
+
+
+def _free(
+    body: Articulated, wrench: Wrench, arm: Arm, a: int, effort: Scalar, beside: Scalar
+) -> tuple[Scalar, Freed]:
+    """The pivot of a freedom, and what eliminating it leaves."""
+    s, u = arm.motion.angular[a], arm.motion.linear[a]
+    force, torque = wrench
+    n, f = body.apply(s, u)
+    pivot = dot(s, n) + dot(u, f) + beside
+    inverse = 1 / pivot
+    net = (effort - (dot(s, torque) + dot(u, force))) * inverse
+    axes = [x != 0 for x in (*s, *u)]
+    along = None
+    if sum(axes) == 1 and beside == 0 and all(x in (0, 1, -1) for x in (*s, *u)):
+        place = axes.index(True)
+        along = (place, None) if place < 3 else (None, place - 3)
+    return pivot, Freed((n, f), inverse, net, along)
+
+
+def _passed_on(wrench: Wrench, freed: Freed, arm: Arm, a: int, effort: Scalar) -> Wrench:
+    """Force and torque with a freedom's own acceleration in them; along it just the effort is left."""
+    n, f = freed.response
+    force = list(add(wrench[0], vector.scale(freed.net, f)))
+    torque = list(add(wrench[1], vector.scale(freed.net, n)))
+    turn, shift = freed.along or (None, None)
+    if turn is not None:
+        torque[turn] = arm.motion.angular[a][turn] * effort
+    if shift is not None:
+        force[shift] = arm.motion.linear[a][shift] * effort
+    return (force[0], force[1], force[2]), (torque[0], torque[1], torque[2])
 
 
 def _accelerations(
-    tree: KinematicTree,
-    algebra: Algebra,
-    crossed: Sequence[Arm],
-    extra: list[tuple[Vector, Vector]],
-    responses: list[list[Wrench]],
-    inverse: list[Scalar],
-    net: list[Scalar],
+    tree: KinematicTree, algebra: Algebra, crossed: Sequence[Arm], freed: list[list[Freed]]
 ) -> list[Scalar]:
-    """From the root to the leaves: each freedom answers the acceleration that reaches it."""
+    """From the root to the leaves: each freedom answers the acceleration that reaches it.
+
+    What accelerates without v̇ is in the forces, so ground does not.
+    """
     result: list[Scalar] = [0] * len(tree.velocities)
     reached: list[tuple[Vector, Vector]] = []
     for i, link in enumerate(tree.links):
-        set_label(algebra, f"accelerations, {caption(link)}")
+        set_label(algebra, f"accelerations, {link.caption}")
         arm = crossed[i]
-        angular, linear = extra[i]
+        inner = incoming = ZERO
         if link.parent >= 0:
             outer, origin = reached[link.parent]
             inner = arm.rotation.into(outer)
             incoming = arm.rotation.into(add(origin, cross(outer, arm.at)))
-        else:
-            inner = incoming = vector.ZERO
         # a freedom eliminated later passes its own acceleration to those before it
         for a in reversed(range(len(link.velocities))):
-            k = link.velocities[a].index
-            n, f = responses[i][a]
-            result[k] = net[k] - inverse[k] * (dot(n, inner) + dot(f, incoming))
+            k, (response, inverse, net, _) = link.velocities[a].index, freed[i][a]
+            n, f = response
+            result[k] = net - inverse * (dot(n, inner) + dot(f, incoming))
             inner = add(inner, vector.scale(result[k], arm.motion.angular[a]))
             incoming = add(incoming, vector.scale(result[k], arm.motion.linear[a]))
-        reached.append((add(inner, angular), add(incoming, linear)))
+        reached.append((inner, incoming))
     return result
 
 
@@ -165,6 +211,15 @@ def _symmetric(j: Inertia, a: Vector) -> Vector:
 def _square(j: Inertia) -> Matrix:
     xx, xy, xz, yy, yz, zz = j
     return ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
+
+
+def _cleared(m: Matrix, k: int, *, rows: bool = False, columns: bool = False) -> Matrix:
+    """A matrix with zeros in row or column k."""
+    x, y, z = (
+        tuple(0 if (rows and i == k) or (columns and j == k) else m[i][j] for j in range(3))
+        for i in range(3)
+    )
+    return (x, y, z)  # type: ignore[return-value]
 
 
 def _upper(m: Matrix) -> Inertia:

@@ -17,13 +17,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from linegraph.algebra import set_label
 from linegraph.constraints.base import Constraint, Instant, Pose, Prescribed, Row
 from linegraph.frames import Frame, Pair, along_velocities, frames, relative_motion, seated, seen
 from linegraph.jets import Jet, Jets, lifted
 from linegraph.joints.base import (
     TORQUES,
 )
-from linegraph.orthogonality import Arm, set_label
 from linegraph.parameters import resolver
 from linegraph.program import Quantity
 from linegraph.rows import rows_of, where
@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from linegraph.algebra import Algebra
     from linegraph.joints import Joint
     from linegraph.kinematics import Closure, KinematicTree
+    from linegraph.orthogonality import Arm
 
 
 @dataclass(frozen=True)

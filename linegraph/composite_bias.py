@@ -15,31 +15,31 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph import vector
-from linegraph.joints import Moments, Motion
+from linegraph.algebra import set_label
+from linegraph.joints import Moments
 from linegraph.mass_matrix import composites
-from linegraph.orthogonality import (
+from linegraph.orthogonality import applied_to, projection
+from linegraph.spins import (
     Crossing,
     Spin,
     accelerated,
-    applied_to,
-    caption,
     crossed_with,
     d_alembert,
-    projection,
     resting,
-    set_label,
+    seen_near,
     spins,
 )
-from linegraph.rotation import Inertia, Rotation
 from linegraph.vector import Vector, add, cross
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from linegraph.algebra import Algebra
+    from linegraph.joints import Motion
     from linegraph.kinematics import KinematicTree
     from linegraph.loads import Applied
     from linegraph.orthogonality import Arm
+    from linegraph.rotation import Inertia, Rotation
     from linegraph.vector import Matrix, Scalar
 
 Wrench = tuple[Vector, Vector]
@@ -57,7 +57,7 @@ def bias_beside_mass(
     ]
     for i in reversed(range(len(tree.links))):
         link, arm = tree.links[i], crossed[i]
-        set_label(algebra, f"forces, {caption(link)}")
+        set_label(algebra, f"forces, {link.caption}")
         near = motions[link.parent] if link.parent >= 0 else resting(tree)
         here = _at_joint(arm, near, carried[i])
         whole = d_alembert(here.carried, here.field)
@@ -103,14 +103,7 @@ def _at_joint(arm: Arm, near: Spin, composite: Moments) -> _Joint:
     """A joint in near axes where its directions are constant there: a link at the end needs no others."""
     pull = add(near.linear, accelerated(near, arm.at))
     rotation, motion = arm.rotation, arm.motion
-    seen = Motion(
-        motion.rotation,
-        motion.displacement,
-        tuple(rotation.out(s) for s in motion.angular),
-        tuple(rotation.out(u) for u in motion.linear),
-        rotation.out(motion.angular_bias),
-        rotation.out(motion.linear_bias),
-    )
+    seen = seen_near(arm)
     if all(isinstance(x, (int, float)) for s in (*seen.angular, *seen.linear) for x in s):
         mass, first, second = composite
         turned = Moments(mass, rotation.out(first), rotation.congruence(second))

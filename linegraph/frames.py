@@ -10,8 +10,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph import vector
+from linegraph.algebra import set_label
 from linegraph.layout import own_rates
-from linegraph.orthogonality import Arm, caption, set_label
 from linegraph.rotation import IDENTITY_MATRIX, product
 from linegraph.vector import ZERO, Matrix, Scalar, Vector, add, cross, dot, subtract, times
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from linegraph.constraints.base import Pose
     from linegraph.kinematics import KinematicTree, Seat
     from linegraph.layout import Freedom
+    from linegraph.orthogonality import Arm
 
 
 class Frame(NamedTuple):
@@ -70,7 +71,7 @@ def frames(
     a = None if acceleration is None else tuple(acceleration)
     found: list[Frame] = []
     for link, arm in zip(tree.links, crossed, strict=True):
-        set_label(algebra, f"place in ground, {caption(link)}")
+        set_label(algebra, f"place in ground, {link.caption}")
         near = found[link.parent] if link.parent >= 0 else GROUND_FRAME
         turning = GROUND_FRAME if arm.level else near
         x, y, z = (arm.rotation.into(row) for row in near.rotation)

@@ -14,6 +14,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from linegraph.algebra import set_label
 from linegraph.body import GROUND, MASS_CENTER
 from linegraph.choices import GROUND_AXES, HEAD
 from linegraph.constraints.base import Constraint
@@ -22,7 +23,7 @@ from linegraph.elements import Element, Load
 from linegraph.frames import GROUND_FRAME, Frame, Pair, frames, seated
 from linegraph.kinematics import Seat, mass_center
 from linegraph.loads import Acting
-from linegraph.orthogonality import applied_to, set_label
+from linegraph.orthogonality import applied_to
 from linegraph.parameters import resolver
 from linegraph.vector import (
     ZERO,

@@ -65,6 +65,11 @@ class Link:
         return self.place.velocities
 
     @property
+    def caption(self) -> str:
+        """How comments in emitted code call it: its joint and its bodies."""
+        return f"{self.joint.name} -> {self.name}"
+
+    @property
     def in_space(self) -> bool:
         """Whether its joint's rotation is that to ground axes: an orientation in space of its own."""
         return self.place.in_space
@@ -258,10 +263,9 @@ def carried_in_plane(moments: Moments, rotation: Rotation, at: Vector) -> Moment
 
 
 def _spread(at: Scalar, inner: Scalar, outer: Scalar) -> Scalar:
-    """``at (inner + outer)``; without mass the two are one, and their product with an arm is of use elsewhere."""
-    if inner is not outer or isinstance(at, (int, float)):
-        return at * (inner + outer)
-    return 2 * (at * inner)
+    """``at (inner + outer)``; without mass the two are one, whose product with an arm M needs, too."""
+    shared = inner is outer and not isinstance(at, (int, float))
+    return 2 * (at * inner) if shared else at * (inner + outer)
 
 
 def joined(a: Moments, b: Moments) -> Moments:

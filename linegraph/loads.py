@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from linegraph import vector
+from linegraph.algebra import set_label
 from linegraph.closure import Chords
 from linegraph.components.forces import NetworkForce, forces_of
 from linegraph.elements import Element, Load
@@ -16,7 +17,6 @@ from linegraph.exchange import ALL, DRIVEN, RESTING, Exchange, Motion
 from linegraph.frames import Frame, Pair, seated
 from linegraph.joints import Joint
 from linegraph.kinematics import Seat
-from linegraph.orthogonality import set_label
 from linegraph.parameters import names_in, resolver
 from linegraph.rotation import Full, product
 from linegraph.scope import joint_state, scope

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from linegraph import vector
-from linegraph.joints import Moments
+from linegraph.algebra import set_label
 from linegraph.joints.base import NO_MOMENTS
 from linegraph.kinematics import KinematicTree, carried, carried_in_plane, joined
 from linegraph.layout import Freedom
-from linegraph.orthogonality import Arm, applied_to, caption, gathered, projection, set_label
+from linegraph.orthogonality import Arm, applied_to, gathered, projection
 from linegraph.rotation import IDENTITY_MATRIX, Full, Relabel, Turn
 from linegraph.vector import ZERO, Matrix, Scalar, Vector, add, cross, dot
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from linegraph.algebra import Algebra
+    from linegraph.joints import Moments
 
 Rows = list[list[Scalar]]
 Column = Iterator[tuple[Freedom, Scalar]]
@@ -37,7 +38,7 @@ def mass_matrix(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> Ro
     inward = _inward_in_ground if ground_is_cheaper(tree, crossed) else _inward_by_frames
     columns = inward(tree, algebra, crossed)
     for i, link in enumerate(tree.links):
-        set_label(algebra, f"mass matrix, {caption(link)}")
+        set_label(algebra, f"mass matrix, {link.caption}")
         motion = crossed[i].motion
         for a, freedom in enumerate(link.velocities):
             force, torque = _inertia_force(carried_by[i], motion.angular[a], motion.linear[a])
@@ -72,7 +73,7 @@ def _inward_in_ground(
     places: list[Vector] = []
     axes: list[list[tuple[Vector, Vector]]] = []
     for link, arm in zip(tree.links, crossed, strict=True):
-        set_label(algebra, f"pose, {caption(link)}")
+        set_label(algebra, f"pose, {link.caption}")
         outer = rows[link.parent] if link.parent >= 0 else IDENTITY_MATRIX
         origin = places[link.parent] if link.parent >= 0 else ZERO
         at = add(origin, vector.times(outer, arm.at))
@@ -128,7 +129,7 @@ def composites(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> lis
     for i in reversed(range(len(tree.links))):
         link = tree.links[i]
         if link.parent >= 0:
-            set_label(algebra, f"carried by {caption(link)}")
+            set_label(algebra, f"carried by {link.caption}")
             carry = moments[i]
             if crossed[i].level:
                 # what turns against ground moves with its parent like a point

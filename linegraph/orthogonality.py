@@ -20,10 +20,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph import vector
+from linegraph.algebra import set_label
 from linegraph.joints import Moments, Motion
 from linegraph.kinematics import parallel
 from linegraph.layout import coordinates, own_rates
 from linegraph.rotation import Full, Rotation, Turn
+from linegraph.spins import inertia_forces
 from linegraph.vector import ZERO, Scalar, Vector, add, cross, dot, subtract
 
 if TYPE_CHECKING:
@@ -60,14 +62,6 @@ class Arm(NamedTuple):
     moments: Moments
     turn: Rotation = Rotation()
     angle: Scalar = 0
-
-
-class Spin(NamedTuple):
-    """How a link moves: angular velocity and acceleration, and the acceleration of its origin."""
-
-    velocity: Vector
-    angular: Vector
-    linear: Vector
 
 
 def arms(
@@ -165,11 +159,7 @@ def inverse_dynamics(
     Motion runs from the root to the leaves (H^T), d'Alembert's forces and torques, less those `applied`,
     back (H).
     """
-    forces = []
-    motions = spins(tree, algebra, crossed, acceleration)
-    for link, arm, spin in zip(tree.links, crossed, motions, strict=True):
-        set_label(algebra, f"forces, {caption(link)}")
-        forces.append(d_alembert(arm.moments, spin))
+    forces = inertia_forces(tree, algebra, crossed, acceleration)
     total: list[Scalar] = [0] * len(tree.velocities)
     if applied is not None:
         forces = [
@@ -197,7 +187,7 @@ def _inward(
     """Cutset equations: forces from the leaves to the root, projected on every freedom they pass."""
     for i in reversed(range(len(tree.links))):
         link = tree.links[i]
-        set_label(algebra, f"forces, {caption(link)}")
+        set_label(algebra, f"forces, {link.caption}")
         force, torque = forces[i]
         for a, freedom in enumerate(link.velocities):
             entry = projection(crossed[i].motion, a, force, torque)
@@ -214,7 +204,7 @@ def energy(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> tuple[S
     kinetic: Scalar = 0
     velocities: list[tuple[Vector, Vector]] = []
     for link, arm in zip(tree.links, crossed, strict=True):
-        set_label(algebra, f"kinetic energy, {caption(link)}")
+        set_label(algebra, f"kinetic energy, {link.caption}")
         angular, linear = velocities[link.parent] if link.parent >= 0 else (ZERO, ZERO)
         linear = arm.rotation.into(add(linear, cross(angular, arm.at)))
         linear = add(linear, vector.combine(arm.rates, arm.motion.linear))
@@ -247,167 +237,13 @@ def coordinate_rates(
     return rates
 
 
-def spins(
-    tree: KinematicTree,
-    algebra: Algebra,
-    crossed: Sequence[Arm],
-    acceleration: Iterable[Scalar] | None = None,
-) -> list[Spin]:
-    """Circuit equations of velocity and acceleration: H^T, from the root to the leaves.
-
-    Gravity enters as the acceleration -g of ground.
-    """
-    a = None if acceleration is None else tuple(acceleration)
-    ground = resting(tree)
-    found: list[Spin] = []
-    for link, arm in zip(tree.links, crossed, strict=True):
-        set_label(algebra, f"motion, {caption(link)}")
-        near = found[link.parent] if link.parent >= 0 else ground
-        here = crossing(arm, near.velocity)
-        angular = here.spin if arm.level else add(arm.rotation.into(near.angular), here.spin)
-        pull = add(near.linear, accelerated(near, arm.at))
-        linear = add(arm.rotation.into(pull), here.linear)
-        if a is not None and link.velocities:
-            own = tuple(f.ratio * a[f.index] for f in link.velocities)
-            angular = add(angular, vector.combine(own, arm.motion.angular))
-            linear = add(linear, vector.combine(own, arm.motion.linear))
-        found.append(Spin(here.velocity, angular, linear))
-    return found
-
-
-def resting(tree: KinematicTree) -> Spin:
-    """How ground moves: gravity enters as its acceleration -g."""
-    return Spin(ZERO, ZERO, vector.negate(tree.gravity))
-
-
-class Crossing(NamedTuple):
-    """What a joint makes of its near link's angular velocity, with v̇ = 0 and in the far link's axes.
-
-    Attributes:
-        before: the near link's angular velocity.
-        turning: the relative one.
-        angular: what the joint adds to the angular acceleration, less ``before x turning``.
-        linear: what it adds to the acceleration of the far link's origin.
-    """
-
-    before: Vector
-    turning: Vector
-    angular: Vector
-    linear: Vector
-
-    @property
-    def velocity(self) -> Vector:
-        """The far link's angular velocity."""
-        return add(self.before, self.turning)
-
-    @property
-    def spin(self) -> Vector:
-        """All that the joint adds to the angular acceleration."""
-        return add(cross(self.before, self.turning), self.angular)
-
-
-def crossing(arm: Arm, near: Vector) -> Crossing:
-    """How a joint is crossed whose near link has this angular velocity, in the far link's axes."""
-    if arm.level:
-        # such joints have no shift: their origin moves with the near link alone
-        w = vector.combine(arm.rates, arm.motion.angular)
-        return Crossing(ZERO, w, arm.motion.angular_bias, ZERO)
-    return crossed_with(arm, arm.motion, arm.rotation.into(near))
-
-
-def crossed_with(arm: Arm, motion: Motion, before: Vector) -> Crossing:
-    """The same with the joint's motion and the near link's angular velocity in any axes."""
-    w = vector.combine(arm.rates, motion.angular)
-    u = vector.combine(arm.rates, motion.linear)
-    angular = motion.angular_bias
-    # Coriolis: the relative velocity u turns with the near link (twice) and with the joint
-    linear = add(cross(add(add(before, w), before), u), motion.linear_bias)
-    if arm.prescribed:
-        angular = add(angular, vector.combine(arm.prescribed, motion.angular))
-        linear = add(linear, vector.combine(arm.prescribed, motion.linear))
-    return Crossing(before, w, angular, linear)
-
-
-def bias_accelerations(
-    tree: KinematicTree, algebra: Algebra, crossed: list[Arm]
-) -> tuple[list[Vector], list[tuple[Vector, Vector]]]:
-    """Angular velocity of each link, and what each joint adds to the acceleration that reaches it.
-
-    The second is (angular, linear) with v̇ = 0, in the far link's axes; at ground it contains -g.
-    """
-    velocities: list[Vector] = []
-    extra: list[tuple[Vector, Vector]] = []
-    for link, arm in zip(tree.links, crossed, strict=True):
-        set_label(algebra, f"motion, {caption(link)}")
-        near = velocities[link.parent] if link.parent >= 0 else ZERO
-        crossed_here = crossing(arm, near)
-        turning = Spin(near, ZERO, ZERO)
-        pull = accelerated(turning, arm.at)
-        if link.parent < 0:
-            pull = vector.subtract(pull, tree.gravity)
-        velocities.append(crossed_here.velocity)
-        extra.append((crossed_here.spin, add(arm.rotation.into(pull), crossed_here.linear)))
-    return velocities, extra
-
-
-def bias_force(moments: Moments, velocity: Vector) -> tuple[Vector, Vector]:
-    """Torque and force, about a link's origin, that its turning asks for at zero acceleration."""
-    _, first, second = moments
-    # ω x J ω: what of J is isotropic does not show
-    torque = cross(applied_to(second, velocity), velocity)
-    return torque, accelerated(Spin(velocity, ZERO, ZERO), first)
-
-
-def _products(w: Vector) -> Inertia:
-    """ω ω^T: computed once, since the DAG shares it between all uses."""
-    x, y, z = w
-    return (x * x, x * y, x * z, y * y, y * z, z * z)
-
-
-def accelerated(spin: Spin, r: Vector) -> Vector:
-    """``U r`` with U = [ε x] + [ω x][ω x]: acceleration of a point r of a link, less its origin's."""
-    xx, xy, xz, yy, yz, zz = _products(spin.velocity)
-    x, y, z = spin.angular
-    return (
-        (xy - z) * r[1] + (xz + y) * r[2] - (yy + zz) * r[0],
-        (xy + z) * r[0] + (yz - x) * r[2] - (xx + zz) * r[1],
-        (xz - y) * r[0] + (yz + x) * r[1] - (xx + yy) * r[2],
-    )
-
-
-def d_alembert(moments: Moments, spin: Spin) -> tuple[Vector, Vector]:
-    """Force and torque that the motion of a link asks for, about its origin.
-
-    f = m a + U b and n = b x a + the axial vector of U S, with b and S the first and second moments; it is
-    written with the entries of U, which the force and the arms need anyway.
-    """
-    mass, first, second = moments
-    force = add(vector.scale(mass, spin.linear), accelerated(spin, first))
-    xx, xy, xz, yy, yz, zz = _products(spin.velocity)
-    x, y, z = spin.angular
-    sxx, sxy, sxz, syy, syz, szz = second
-    torque = (
-        _twisted(syy, szz, yz, x) + (zz - yy) * syz + (xz - y) * sxy - (xy + z) * sxz,
-        _twisted(szz, sxx, xz, y) + (xx - zz) * sxz + (xy - z) * syz - (yz + x) * sxy,
-        _twisted(sxx, syy, xy, z) + (yy - xx) * sxy + (yz - x) * sxz - (xz + y) * syz,
-    )
-    return force, add(torque, cross(first, spin.linear))
-
-
-def _twisted(a: Scalar, b: Scalar, both: Scalar, turn: Scalar) -> Scalar:
-    """``a (both + turn) - b (both - turn)``; where neither is zero their sum and difference serve better."""
-    if a == 0 or b == 0:
-        return a * (both + turn) - b * (both - turn)
-    return (a + b) * turn + (a - b) * both
-
-
 def _potential(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> Scalar:
     """``-g . (sum of m r)``: first moments gathered from the leaves to the root."""
     gathered = [(arm.moments.mass, arm.moments.first) for arm in crossed]
     total: Vector = ZERO
     for i in reversed(range(len(tree.links))):
         link, arm = tree.links[i], crossed[i]
-        set_label(algebra, f"potential energy, {caption(link)}")
+        set_label(algebra, f"potential energy, {link.caption}")
         mass, first = gathered[i]
         first = add(arm.rotation.out(first), vector.scale(mass, arm.at))
         if link.parent < 0:
@@ -442,14 +278,3 @@ def applied_to(j: Inertia, a: Vector) -> Vector:
         xy * a[0] + yy * a[1] + yz * a[2],
         xz * a[0] + yz * a[1] + zz * a[2],
     )
-
-
-def caption(link: Link) -> str:
-    """How comments in emitted code call a link: its joint and its bodies."""
-    return f"{link.joint.name} -> {link.name}"
-
-
-def set_label(algebra: Algebra, text: str) -> None:
-    """Tell a DAG which part the next nodes belong to."""
-    if hasattr(algebra, "label"):
-        algebra.label = text

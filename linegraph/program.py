@@ -88,9 +88,8 @@ class Program:
 
     @property
     def operations(self) -> int:
-        """Arithmetic operations and function calls executed: every node once, signs included."""
-        live = _live(_roots(self.results, self.checks))
-        return sum(_cost(node, self.turned) for node in live)
+        """Arithmetic operations and function calls executed: every node once; a change of sign is free."""
+        return sum(node.op not in (SYMBOL, NEG) for node in live_nodes(self))
 
 
 @dataclass(frozen=True)
@@ -256,9 +255,3 @@ def _named(live: list[Node], uses: dict[int, int], forced: set[int]) -> tuple[No
             total = 0
         size[index] = total
     return tuple(named)
-
-
-def _cost(node: Node, turned: frozenset[int]) -> int:
-    if node.op == SYMBOL:
-        return 0
-    return 0 if node.op == NEG and node.a.index in turned else 1

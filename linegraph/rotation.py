@@ -33,6 +33,9 @@ class Factor(Protocol):
     def congruence(self, j: Inertia) -> Inertia:
         """``R J R^T``: a symmetric tensor from inner to outer components."""
 
+    def similarity(self, m: Matrix) -> Matrix:
+        """``R M R^T``: any tensor from inner to outer components."""
+
     def inverse(self) -> Factor:
         """``R^T`` as a factor."""
 
@@ -79,6 +82,22 @@ class Turn:
         turned[jk] = s * j[ik] + c * j[jk]
         return tuple(turned)
 
+    def similarity(self, m: Matrix) -> Matrix:
+        """``R M R^T``; what is skew in the plane of the turn stays, as half the trace does."""
+        k, i, j = self.axis, (self.axis + 1) % 3, (self.axis + 2) % 3
+        c, s = self.cosine, self.sine
+        twist = s * (m[i][i] - m[j][j]) + c * (m[i][j] + m[j][i])
+        moved, common = s * twist, c * twist
+        turned = [list(row) for row in m]
+        turned[i][i] = m[i][i] - moved
+        turned[j][j] = m[j][j] + moved
+        turned[i][j] = common - m[j][i]
+        turned[j][i] = common - m[i][j]
+        turned[i][k], turned[j][k] = c * m[i][k] - s * m[j][k], s * m[i][k] + c * m[j][k]
+        turned[k][i], turned[k][j] = c * m[k][i] - s * m[k][j], s * m[k][i] + c * m[k][j]
+        x, y, z = (tuple(row) for row in turned)
+        return (x, y, z)
+
     def inverse(self) -> Turn:
         """The turn by the opposite angle."""
         return Turn(self.axis, self.cosine, -self.sine)
@@ -107,6 +126,16 @@ class Relabel:
             return self.signs[r] * self.signs[c] * j[_PLACE[self.source[r]][self.source[c]]]
 
         return (entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2))
+
+    def similarity(self, m: Matrix) -> Matrix:
+        """``R M R^T``."""
+        x, y, z = (
+            tuple(
+                self.signs[r] * self.signs[c] * m[self.source[r]][self.source[c]] for c in range(3)
+            )
+            for r in range(3)
+        )
+        return (x, y, z)
 
     def inverse(self) -> Relabel:
         """The permutation back."""
@@ -146,6 +175,12 @@ class Full:
             z[0] * s[0] + z[1] * s[1] + z[2] * s[2],
         )
 
+    def similarity(self, m: Matrix) -> Matrix:
+        """``R M R^T``."""
+        x, y, z = (self.out(column) for column in transpose(m))
+        p, r, s = (self.out(row) for row in transpose((x, y, z)))
+        return (p, r, s)
+
     def inverse(self) -> Full:
         """The transposed matrix."""
         return Full(transpose(self.rows))
@@ -174,6 +209,12 @@ class Rotation:
         for factor in reversed(self.factors):
             j = factor.congruence(j)
         return j
+
+    def similarity(self, m: Matrix) -> Matrix:
+        """``R M R^T``: any tensor from inner to outer components."""
+        for factor in reversed(self.factors):
+            m = factor.similarity(m)
+        return m
 
     def inverse(self) -> Rotation:
         """``R^T``."""

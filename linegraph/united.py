@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from linegraph import orthogonality
+from linegraph.algebra import set_label
 from linegraph.loads import Acting
 from linegraph.mass_matrix import mass_matrix
-from linegraph.orthogonality import set_label
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

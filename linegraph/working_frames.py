@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph import vector
 from linegraph.body import Placement
-from linegraph.joints import Moments
 from linegraph.kinematics import KinematicTree, Link, carried, parallel
 from linegraph.rotation import IDENTITY_MATRIX, Rotation, Turn, product, rotation_of, snapped
 from linegraph.vector import ZERO, Matrix, Vector, add, cross, subtract
@@ -141,8 +140,8 @@ def _turned(
             )
             turns[i] = _about_z(angle)
             if angle:
-                link = replace(link, moments=_seen_turned(link.moments, turns[i]))
-                links[i] = _angle_shifted(link, angle)
+                moments = carried(link.moments, rotation_of(vector.transpose(turns[i])), ZERO)
+                links[i] = replace(_angle_shifted(link, angle), moments=moments)
         back = vector.transpose(turns[i])
         for c in children[i]:
             if _numeric(links[c]):
@@ -238,11 +237,6 @@ def _angle_shifted(link: Link, angle: float) -> Link:
     return replace(link, place=moved)
 
 
-def _seen_turned(moments: Moments, turn: Matrix) -> Moments:
-    """Moments in axes that are turned."""
-    return carried(moments, rotation_of(vector.transpose(turn)), ZERO)
-
-
 def _swept(turned: Vector, original: Vector) -> Vector:
     """Drop rounding dust where an exact zero belongs."""
     scale = max(abs(x) for x in original)
@@ -285,14 +279,14 @@ def _best_shift(
     found += [-x / d for x, d in given if x != 0 and abs(d) > WELL_APART]
     found += [child.at[axis] for child in children if child.at[axis] != 0]
 
-    def cost(s: float) -> float:
+    def cost(s: float) -> int:
         shift = vector.scale(s, IDENTITY_MATRIX[axis])
         own = _moved_origin(link, shift)
         arms = [own.at, *(_seen_shifted(child, shift).at for child in children)]
-        total = sum(
-            w * sum(x != 0 for x in at) for w, at in zip((weight, *weights), arms, strict=True)
-        )
-        return total + 4 * sum(own.moments.second[k] != 0 for k in (2, 4))
+        total = 4 * sum(own.moments.second[k] != 0 for k in (2, 4))
+        for w, at in zip((weight, *weights), arms, strict=True):
+            total += w * sum(x != 0 for x in at)
+        return total
 
     return vector.scale(min(found, key=cost), IDENTITY_MATRIX[axis])
 

@@ -288,5 +288,5 @@ def point_apart(head: Moments) -> tuple[Moments, Moments]:
 def round_apart(head: Moments) -> tuple[Moments, Moments]:
     """The spread along z, handed over: for joints whose frames have the direction of z in common."""
     *others, zz = head.second
-    kept = Moments(head.mass, head.first, (*others, 0))  # type: ignore[arg-type]
+    kept = Moments(head.mass, head.first, (*others, 0))
     return kept, Moments(0, ZERO, (0, 0, 0, 0, 0, zz))
