@@ -174,13 +174,13 @@ def _bound(pivot: Scalar, entry: Scalar) -> Scalar:
 
 
 def _factored_cost(f: Functions) -> int:
-    """Operations of `equations` and of what `_factored` adds: p(p+1) + 4p + 3 for p couplings inward."""
+    """Operations of `equations` and of what `_factored` adds: p(p+1) + 5p + 3 for p couplings inward."""
     place = {k: n for n, k in enumerate(f.tree.outward)}
     inward = [
         sum(used and place[j] < place[i] for j, used in enumerate(row))
         for i, row in enumerate(f.pattern)
     ]
-    return _equations(f).operations + sum(p * (p + 1) + 4 * p + 3 for p in inward)
+    return _equations(f).operations + sum(p * (p + 1) + 5 * p + 3 for p in inward)
 
 
 def _solved(
