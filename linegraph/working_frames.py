@@ -1,7 +1,8 @@
 """Working frames in which the equations of motion are shortest.
 
 About and along its joint's axis a link's working frame may stand where one likes: the motion stays the
-same. So it is
+same. So a joint of several axes
+is taken apart first (`expansion`), and each link is
 
     turned   until the constant rotation to a child, or the way to it, needs fewer components;
     slid     until as many components of the arms as can be are zero;
@@ -20,7 +21,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph import vector
 from linegraph.body import Placement
-from linegraph.kinematics import KinematicTree, Link, carried, parallel
+from linegraph.expansion import expanded
+from linegraph.kinematics import KinematicTree, Link, carried, compose, parallel
 from linegraph.rotation import IDENTITY_MATRIX, Rotation, Turn, product, rotation_of, snapped
 from linegraph.vector import ZERO, Matrix, Vector, add, cross, subtract
 
@@ -47,22 +49,24 @@ class Shortened(NamedTuple):
     """A tree in its shortest working frames.
 
     Attributes:
-        tree: the links; what it says of bodies and ends holds for the frames of the walk only.
-        poses: each link's working frame in the one of the walk.
+        tree: the links; what it says of bodies and ends holds for the walk only.
+        places: for each link of the walk the one that has its bodies.
+        poses: for each link of the walk that one's working frame in its own.
     """
 
     tree: KinematicTree
+    places: tuple[int, ...]
     poses: tuple[Placement, ...]
 
     def rehoused(
         self, wrenches: Iterable[tuple[Vector, Vector]], crossed: Sequence[Arm]
     ) -> list[tuple[Vector, Vector]]:
         """Forces and torques given in the frames of the walk, in and about those of the tree."""
-        found = []
-        for (force, torque), pose, arm in zip(wrenches, self.poses, crossed, strict=True):
-            turned = rotation_of(pose.rotation)
+        found = [(ZERO, ZERO)] * len(self.tree.links)
+        for (force, torque), place, pose in zip(wrenches, self.places, self.poses, strict=True):
+            turned, turn = rotation_of(pose.rotation), crossed[place].turn
             about = subtract(torque, cross(pose.at, force))
-            found.append((arm.turn.out(turned.into(force)), arm.turn.out(turned.into(about))))
+            found[place] = (turn.out(turned.into(force)), turn.out(turned.into(about)))
         return found
 
 
@@ -70,20 +74,22 @@ def shortened(tree: KinematicTree) -> Shortened:
     """The same M and h in fewer operations."""
     if tree.levelled:
         # angles measured from ground leave no choice
-        return Shortened(tree.regrouped(), (Placement(ZERO, IDENTITY_MATRIX),) * len(tree.links))
-    children = _children(tree.links)
-    links, turns = _turned(list(tree.links), children)
+        same = (Placement(ZERO, IDENTITY_MATRIX),) * len(tree.links)
+        return Shortened(tree.regrouped(), tuple(range(len(tree.links))), same)
+    apart = expanded(tree)
+    children = _children(apart.tree.links)
+    links, turns = _turned(list(apart.tree.links), children)
     links, shifts = _slid(links, children)
-    poses = tuple(
-        Placement(rotation_of(turn).out(shift), turn)
-        for turn, shift in zip(turns, shifts, strict=True)
-    )
+    poses = []
+    for k, turn in zip(apart.last, apart.turns, strict=True):
+        moved = Placement(rotation_of(turns[k]).out(shifts[k]), turns[k])
+        poses.append(compose(Placement(ZERO, turn.matrix()), moved, DUST))
     short = replace(tree, links=tuple(links)).regrouped()
     stilled = tuple(
         replace(link, still=_run_goes_on(link, [short.links[c] for c in children[i]]))
         for i, link in enumerate(short.links)
     )
-    return Shortened(replace(short, links=stilled), poses)
+    return Shortened(replace(short, links=stilled), apart.last, tuple(poses))
 
 
 def _children(links: Sequence[Link]) -> list[list[int]]:
@@ -279,14 +285,14 @@ def _best_shift(
     found += [-x / d for x, d in given if x != 0 and abs(d) > WELL_APART]
     found += [child.at[axis] for child in children if child.at[axis] != 0]
 
-    def cost(s: float) -> int:
+    def cost(s: float) -> float:
         shift = vector.scale(s, IDENTITY_MATRIX[axis])
         own = _moved_origin(link, shift)
         arms = [own.at, *(_seen_shifted(child, shift).at for child in children)]
-        total = 4 * sum(own.moments.second[k] != 0 for k in (2, 4))
+        total = 4.0 * sum(own.moments.second[k] != 0 for k in (2, 4))
         for w, at in zip((weight, *weights), arms, strict=True):
             total += w * sum(x != 0 for x in at)
-        return total
+        return float(total)
 
     return vector.scale(min(found, key=cost), IDENTITY_MATRIX[axis])
 

@@ -40,7 +40,7 @@ def compare(tree: KinematicTree, q: Any, v: Any, a: Any) -> float:
     algebra, short = Floats(), shortened(tree).tree
     q, v, a = ([float(x) for x in y] for y in (q, v, a))
     plain, crossed = (orthogonality.arms(t, algebra, q, v) for t in (tree, short))
-    nothing = Applied([(ZERO, ZERO)] * len(tree.links), [0] * len(tree.velocities))
+    nothing = Applied([(ZERO, ZERO)] * len(short.links), [0] * len(tree.velocities))
     m = np.array(mass_matrix(tree, algebra, plain), dtype=float)
     h = orthogonality.inverse_dynamics(tree, algebra, plain)
     tau = orthogonality.inverse_dynamics(tree, algebra, plain, a)
@@ -127,7 +127,7 @@ def test_axes_that_are_almost_parallel_lose_no_digits(lean: float) -> None:
 
 
 def test_frames_are_slid_turned_and_still() -> None:
-    """A hinge about y, then two about x: offsets along an axis go where they cost nothing, to ground at last."""
+    """A hinge about y, then two about x: offsets along an axis end in ground."""
     model = Model("leg")
     hip = model.body("hip", mass=1, mass_center=(0.1, 0, 0), inertia=(1, 2, 2.5))
     thigh = model.body("thigh", mass=1, mass_center=(0.1, 0, -0.2), inertia=(1, 2, 2.5))

@@ -4,7 +4,7 @@ A joint is an oriented edge from a *tail* frame to a *head* frame, in translatio
 across variables are the motion of the head relative to the tail; its coordinates q and velocities v are
 what it leaves free of it. All types answer the same questions in the same order:
 
-    positions   velocities   rest   resolved   alignment   motion   rates   regroup
+    positions   velocities   rest   resolved   alignment   motion   sequence   rates   regroup
     restricted   measured   duals
 
 The last three say what a joint is as a *chord*, one that closes a loop: what it forbids, and what its
@@ -223,6 +223,14 @@ class Joint:
     def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
         """The relative motion at (q, v), in aligned axes."""
         raise NotImplementedError
+
+    def sequence(self) -> tuple[tuple[Joint, Rotation], ...]:
+        """The joints of one axis it is a sequence of, if it is: each with its axes in the aligned ones.
+
+        With m the motion of a part, written about z, and B its axes, the motion is the product of all
+        ``B m B^T``; q and v are those of the parts in order.
+        """
+        return ()
 
     def rates(
         self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.body import unit
 from linegraph.checks import vector
-from linegraph.joints.base import Motion
+from linegraph.joints.base import Joint, Motion
+from linegraph.joints.revolute import Revolute
 from linegraph.rotation import (
     IDENTITY_MATRIX,
     Factor,
@@ -142,6 +143,14 @@ def turns(
     """Hinges one after the other, each about a constant direction in the axes left by those before it."""
     hinges = [turn(a, algebra.cos(x), algebra.sin(x)) for a, x in zip(axes, q, strict=True)]
     return chain(hinges, v)
+
+
+def hinges(joint: Joint, axes: Sequence[Vector]) -> tuple[tuple[Joint, Rotation], ...]:
+    """Hinges about constant directions as a joint's sequence."""
+    return tuple(
+        (Revolute(f"{joint.name}_angle{k}", joint.between), onto(axis))
+        for k, axis in enumerate(axes, 1)
+    )
 
 
 def reoriented(motion: Motion, change: Rotation) -> Motion:

@@ -113,12 +113,18 @@ class Compound(Joint):
 
     def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
         """The motions of the parts, composed in the common axes."""
-        axes = self.alignment()
         motions = [
-            reoriented(part.motion(algebra, at, rates), _placed(part, axes))
-            for part, at, rates in self._shares(q, v)
+            reoriented(part.motion(algebra, at, rates), axes)
+            for (part, at, rates), (_, axes) in zip(
+                self._shares(q, v), self.sequence(), strict=True
+            )
         ]
         return chain(motions, v)
+
+    def sequence(self) -> tuple[tuple[Joint, Rotation], ...]:
+        """The parts."""
+        axes = self.alignment()
+        return tuple((part, _placed(part, axes)) for part in self._joints)
 
     def rates(
         self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from linegraph.joints.base import Joint, Motion, Restriction
-from linegraph.joints.composition import compose
+from linegraph.joints.composition import compose, onto
+from linegraph.joints.prismatic import Prismatic
 from linegraph.joints.spherical import Spherical
 from linegraph.program import Quantity
 from linegraph.rotation import IDENTITY_MATRIX, Rotation
@@ -81,6 +82,16 @@ class Free(Joint):
         if self.angles is None:
             return Motion(turn.rotation, at, none + IDENTITY_MATRIX, IDENTITY_MATRIX + none)
         return compose(Motion(Rotation(), at, none, IDENTITY_MATRIX), turn, v[:3], v[3:])
+
+    def sequence(self) -> tuple[tuple[Joint, Rotation], ...]:
+        """Three shifts and three hinges, where it has angles."""
+        if self.angles is None:
+            return ()
+        shifts = tuple(
+            (Prismatic(f"{self.name}_{c}", self.between), onto(axis))
+            for c, axis in zip("xyz", IDENTITY_MATRIX, strict=True)
+        )
+        return (*shifts, *self._ball.sequence())
 
     def rates(
         self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from linegraph.errors import ModelError
 from linegraph.joints.base import NO_SHIFT, Joint, Moments, Motion, Restriction, point_apart
-from linegraph.joints.composition import angles_of, reciprocal, turns
+from linegraph.joints.composition import angles_of, hinges, reciprocal, turns
 from linegraph.program import Quantity
 from linegraph.rotation import IDENTITY_MATRIX, Full, Rotation, from_quaternion
 from linegraph.vector import ZERO, Matrix, Scalar, Vector
@@ -96,6 +96,10 @@ class Spherical(Joint):
             rotation = Rotation((Full(from_quaternion(x, y, z, w)),))
             return Motion(rotation, ZERO, IDENTITY_MATRIX, (ZERO, ZERO, ZERO))
         return turns(algebra, [IDENTITY_MATRIX["xyz".index(c)] for c in self.angles], q, v)
+
+    def sequence(self) -> tuple[tuple[Joint, Rotation], ...]:
+        """Three hinges, where it has angles."""
+        return hinges(self, [IDENTITY_MATRIX["xyz".index(c)] for c in self.angles or ""])
 
     def rates(
         self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]

@@ -19,6 +19,7 @@ from linegraph.joints.base import (
 from linegraph.joints.composition import (
     common_axes,
     direction,
+    hinges,
     parallel,
     reciprocal,
     seen,
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from linegraph.algebra import Algebra
+    from linegraph.rotation import Rotation
     from linegraph.vector import Matrix, Scalar, Vector
 
 
@@ -94,6 +96,11 @@ class Universal(Joint):
         """A turn about the first axis, then one about the second."""
         axes = self.alignment()
         return turns(algebra, [seen(axis, axes) for axis in self._directions], q, v)
+
+    def sequence(self) -> tuple[tuple[Joint, Rotation], ...]:
+        """Two hinges."""
+        axes = self.alignment()
+        return hinges(self, [seen(axis, axes) for axis in self._directions])
 
     def regroup(self, head: Moments) -> tuple[Moments, Moments]:
         """Hand over the mass as a point: the joint's centre belongs to both bodies.
