@@ -201,7 +201,10 @@ def test_codegen_sees_programs_only() -> None:
 
 def test_joint_types_know_the_base_and_what_they_are_made_of() -> None:
     common = {"linegraph.joints.base", "linegraph.joints.composition"}
-    made_of = {"linegraph.joints.free": {"linegraph.joints.spherical"}}
+    made_of = {
+        "linegraph.joints.free": {"linegraph.joints.prismatic", "linegraph.joints.spherical"},
+        "linegraph.joints.composition": {"linegraph.joints.revolute"},
+    }
     folder = {name for name in files() if name.startswith("linegraph.joints.")}
     for found in all_imports():
         if found.source in folder - {"linegraph.joints.compound"} and found.target in folder:
