@@ -164,13 +164,17 @@ def _join(module: Module, result: Result) -> str:
 
 def _sizes(program: Program | Routine) -> str:
     """Of a routine, which takes one state at a time, how many components each result has; else nothing."""
-    if not isinstance(program, Routine) or program.algorithm in routines.BATCHED:
+    if not isinstance(program, Routine) or program.handed:
+        return ""
+    if program.algorithm in routines.BATCHED:
         return ""
     return ", ".join(str(math.prod(result.shape)) for result in program.results) + ","
 
 
 def _body(module: Module, program: Program | Routine) -> list[str]:
     """The lines of a private function: arguments and results are lists of components."""
+    if program.handed:
+        return routines.handed(module, program, "python", "_")
     if isinstance(program, Routine):
         return routines.body(module, program, "python", "_", literal)
     lines = []

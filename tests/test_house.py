@@ -62,7 +62,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("derive",),
     ("network_programs",),
     ("closed_programs", "edge_programs", "interpretation", "modelfile", "urdf"),
-    ("shared",),
+    ("prologue", "shared"),
     ("programs",),
     ("codegen", "trees"),
     ("checking", "emission", "report"),
