@@ -76,6 +76,7 @@ class Program:
         turned: indices of differences a - b that are computed as b - a, since only their negative is used.
         handed: the function that does the same from the constants of `prepare`, where its text is not to
             stand twice; empty where the function is emitted whole.
+        guarded: indices of divisions that may be by zero, since what uses them checks that first.
     """
 
     name: str
@@ -88,6 +89,7 @@ class Program:
     calls: tuple[Call, ...] = ()
     status: bool = False
     handed: str = ""
+    guarded: frozenset[int] = frozenset()
 
     @property
     def operations(self) -> int:

@@ -1,13 +1,13 @@
 """The prologue: what parameters alone determine is computed once, by `prepare`, and read by other functions.
 
-Every function of `PREPARED` gets a twin that takes the constants c in place of the parameters p. In it
-
-    a value of parameters alone is an entry of c, a parameter itself, too
-    a division by such a value is a multiplication by its reciprocal
-    constant factors meet: (x k1) k2 = x (k1 k2)
+Every function of `PREPARED` gets a twin that takes the constants c in place of the parameters p. Every value
+of parameters alone that it uses is an entry of c, a parameter itself, too; `constants` brings together what
+can be.
 
 A function of parameters hands its work to its twin where that costs about the same, so that the arithmetic
-is emitted once; short ones stay whole, and so do those that could then fail where they do not now.
+is emitted once. Short ones stay whole, and so do those that could then fail where they do not now, as a
+division by zero is an error in some languages. Where a check of some function stands before such a division
+it is none: `prepare` goes on, and the check tells.
 """
 
 from __future__ import annotations
@@ -15,11 +15,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeVar
 
-from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL, Dag, Node, Operand
+from linegraph.constants import Restructured, ends, is_constant, mapped, remade
+from linegraph.expression import DIV, NEG, SYMBOL, Dag, Node, Operand
 from linegraph.program import Argument, Call, Program, Result, Routine, assemble, live_nodes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Iterable, Sequence
 
 PREPARE = "prepare"
 SUFFIX = "_prepared"
@@ -66,7 +67,7 @@ def with_prologue(
         All functions, and how many constants there are: none where no function depends on parameters.
     """
     given = [p for p in programs if isinstance(p, Program) and p.name in PREPARED]
-    twins = _Restructured().programs(given)
+    twins = Restructured().programs(given)
     constants = _Constants(twins)
     entries = constants.entries
     if not entries:
@@ -78,6 +79,9 @@ def with_prologue(
     )
     parameters = next(a for a in given[0].arguments if a.name == "p")
     prologue = assemble(PREPARE, about, (parameters,), (result,))
+    judged = _judged(twins)
+    guarded = (n.index for n in live_nodes(prologue) if n.op == DIV and n.b.index in judged)
+    prologue = replace(prologue, guarded=frozenset(guarded))
     found: dict[str, Program | Routine] = {
         program.name: constants.read_by(twin) for program, twin in zip(given, twins, strict=True)
     }
@@ -96,55 +100,6 @@ def with_prologue(
     return tuple(whole), len(entries)
 
 
-class _Restructured:
-    """Programs over a DAG of their own, divisions by constants and constant factors rearranged."""
-
-    def __init__(self) -> None:
-        self._dag = Dag()
-        self._known: dict[int, Operand] = {}
-        self._constant: dict[int, bool] = {}
-
-    def programs(self, programs: Iterable[Program]) -> list[Program]:
-        """All of them, nodes in the order in which they were derived."""
-        programs = list(programs)
-        nodes = {node.index: node for program in programs for node in live_nodes(program)}
-        for index in sorted(nodes):
-            self._dag.label = nodes[index].label
-            self._known[index] = self._made(nodes[index])
-        self._dag.release()
-        return [_mapped(program, self._of) for program in programs]
-
-    def _of(self, x: Operand) -> Operand:
-        return self._known[x.index] if isinstance(x, Node) else x
-
-    def _made(self, node: Node) -> Operand:
-        if node.op == MUL:
-            return self._product(self._of(node.a), self._of(node.b))
-        if node.op == DIV:
-            a, b = self._of(node.a), self._of(node.b)
-            if self._varies_by(a, b):
-                return self._product(a, self._dag.divide(1, b))
-        return _remade(self._dag, node, self._of)
-
-    def _product(self, a: Operand, b: Operand) -> Operand:
-        """``a b``; a constant goes to the constant factor that the other one has already."""
-        if is_constant(a, self._constant):
-            a, b = b, a
-        if not isinstance(a, Node) or not self._varies_by(a, b):
-            return self._dag.multiply(a, b)
-        if a.op == NEG:
-            return self._dag.negate(self._product(a.a, b))
-        if a.op == MUL:
-            for x, k in ((a.a, a.b), (a.b, a.a)):
-                if is_constant(k, self._constant):
-                    return self._dag.multiply(x, self._dag.multiply(k, b))
-        return self._dag.multiply(a, b)
-
-    def _varies_by(self, a: Operand, b: Operand) -> bool:
-        """Whether b is constant and a is not."""
-        return is_constant(b, self._constant) and not is_constant(a, self._constant)
-
-
 class _Constants:
     """The largest values of parameters alone that programs use, and the programs that read them from c.
 
@@ -161,7 +116,7 @@ class _Constants:
         used: dict[int, Node] = {}
         varying = [node for _, node in sorted(nodes.items()) if not is_constant(node, constant)]
         operands = [x for node in varying if node.op != SYMBOL for x in (node.a, node.b)]
-        for x in (*operands, *(x for program in programs for x in _ends(program))):
+        for x in (*operands, *(x for program in programs for x in ends(program))):
             if isinstance(x, Node) and is_constant(x, constant):
                 value = x.a if x.op == NEG else x
                 used[value.index] = value
@@ -170,12 +125,12 @@ class _Constants:
             self._known[value.index] = dag.symbol("c", place)
         for node in varying:
             dag.label = node.label
-            self._known[node.index] = _remade(dag, node, self._of)
+            self._known[node.index] = remade(dag, node, self._of)
         dag.release()
 
     def read_by(self, program: Program) -> Program:
         """The twin of a program."""
-        twin = _mapped(_twin(program, len(self.entries)), self._of)
+        twin = mapped(_twin(program, len(self.entries)), self._of)
         return assemble(
             twin.name,
             twin.about,
@@ -201,13 +156,11 @@ class _Cost:
         total: its operations.
         constant: those that depend on parameters alone.
         divisors: what it divides by of these.
-        judges: whether it checks a value of parameters alone: then it must not be divided by before.
     """
 
     total: int
     constant: frozenset[int]
     divisors: frozenset[int]
-    judges: bool
 
 
 class _Handing:
@@ -219,7 +172,8 @@ class _Handing:
         self._constant: dict[int, bool] = {}
         self._costs: dict[str, _Cost] = {}
         costs = [self._cost(p.name) for p in programs if p.name in PREPARED]
-        self._divisors = frozenset[int]().union(*(cost.divisors for cost in costs))
+        every = frozenset[int]().union(*(cost.divisors for cost in costs))
+        self._divisors = every - _judged(p for p in programs if isinstance(p, Program))
 
     def of(self, program: T) -> T:
         """The function, as it is to be emitted."""
@@ -227,7 +181,7 @@ class _Handing:
 
     def _hands(self, program: Program | Routine) -> bool:
         cost = self._cost(program.name)
-        if cost.judges or not self._divisors <= cost.divisors:
+        if not self._divisors <= cost.divisors:
             return False
         if isinstance(program, Routine):
             # it may call functions many times: prepared once for all
@@ -253,58 +207,17 @@ class _Handing:
             program.operations,
             frozenset(node.index for node in constant if node.op != NEG),
             frozenset(x.index for x in divisors if isinstance(x, Node)),
-            any(is_constant(check.node, self._constant) for check in program.checks),
         )
         return _together(0, [own, *inner])
 
 
-def is_constant(x: Operand, known: dict[int, bool]) -> bool:
-    """Whether an operand depends on parameters at most; `known` keeps the answers, by index."""
-    if not isinstance(x, Node):
-        return True
-    pending = [x]
-    while pending:
-        node = pending[-1]
-        operands = () if node.op == SYMBOL else (node.a, node.b)
-        nodes = [y for y in operands if isinstance(y, Node)]
-        asked = [y for y in nodes if y.index not in known]
-        if asked:
-            pending += asked
-            continue
-        known[node.index] = all(known[y.index] for y in nodes) if nodes else node.a == "p"
-        pending.pop()
-    return known[x.index]
+def _judged(programs: Iterable[Program]) -> frozenset[int]:
+    """What checks of programs are about, whatever its sign, by index."""
 
+    def bare(node: Node) -> Node:
+        return bare(node.a) if node.op in ("abs", NEG) else node
 
-def _remade(dag: Dag, node: Node, of: Callable[[Operand], Operand]) -> Operand:
-    """The same operation in `dag`, on what its operands have become."""
-    if node.op == SYMBOL:
-        return dag.symbol(node.a, node.b)
-    a = of(node.a)
-    if node.op == NEG:
-        return dag.negate(a)
-    if node.b is None:
-        return dag.function(node.op, a)
-    b = of(node.b)
-    binary = {ADD: dag.add, SUB: dag.subtract, MUL: dag.multiply, DIV: dag.divide}
-    return binary[node.op](a, b) if node.op in binary else dag.function(node.op, a, b)
-
-
-def _ends(program: Program) -> list[Operand]:
-    """What a program has to know: entries of results and what is checked."""
-    entries = [entry for result in program.results for entry in result.entries]
-    return [*entries, *(x for check in program.checks for x in (check.node, check.bound))]
-
-
-def _mapped(program: Program, of: Callable[[Operand], Operand]) -> Program:
-    """A program with other results and checks, not yet put in order."""
-    results = tuple(replace(r, entries=tuple(map(of, r.entries))) for r in program.results)
-    checks = []
-    for check in program.checks:
-        node = of(check.node)
-        assert isinstance(node, Node)
-        checks.append(replace(check, node=node, bound=of(check.bound)))
-    return replace(program, results=results, checks=tuple(checks))
+    return frozenset(bare(check.node).index for program in programs for check in program.checks)
 
 
 def _twin(program: T, size: int) -> T:
@@ -333,5 +246,4 @@ def _together(total: int, costs: Sequence[_Cost]) -> _Cost:
         total + sum(cost.total for cost in costs),
         none.union(*(cost.constant for cost in costs)),
         none.union(*(cost.divisors for cost in costs)),
-        any(cost.judges for cost in costs),
     )

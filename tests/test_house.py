@@ -38,7 +38,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("algebra", "expression", "formula", "jets"),
     ("differentiation", "residues", "sympy_walk"),
     ("parameters", "program", "rotation", "topology"),
-    ("checks", "elements"),
+    ("checks", "constants", "elements"),
     ("body", "choices"),
     ("components",),
     ("constraints", "joints", "network"),

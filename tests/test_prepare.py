@@ -32,9 +32,10 @@ if TYPE_CHECKING:
     from linegraph.program import Module
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
-EXACT = 1e-12  # relative to 1 + the largest expected entry; measured 2e-14
+EXACT = 1e-12  # relative to 1 + the largest expected entry; measured 8e-15
 SOLVED = 1e-10  # what a system of equations is solved for
 STATES = 4
+INERTIA = ("xx", "xy", "xz", "yy", "yz", "zz")
 
 
 def error(found: Any, expected: Any) -> float:
@@ -305,15 +306,34 @@ def chain(links: int) -> lg.Model:
             f"b{i}",
             mass=symbols.one(1),
             mass_center=symbols.all(rng.uniform(0.1, 0.3, size=3)),
-            inertia={k: symbols.one(0.1) for k in ("xx", "xy", "xz", "yy", "yz", "zz")},
+            inertia={k: symbols.one(0.1 if k[0] == k[1] else 0.01) for k in INERTIA},
         )
         axis = ((0, 0, 1), (0, 1, 0), (1, 0, 0))[i % 3]
         model.revolute(f"j{i}", between=(tip, before), axis=axis)
     return model
 
 
-MOST = {"prepare": 391, "equations_prepared": 1604, "inverse_dynamics_prepared": 896}
-MOST |= {"mass_matrix_prepared": 758, "bias_prepared": 860, "equations": 1943}
+def test_articulated_inertias_of_regrouped_symbols(tmp_path: Path) -> None:
+    """Moments of a link that has handed its mass inward, in a chain too long to factor M."""
+    links = 14
+    model = chain(links)
+    programs = {p.name: p for p in module_for(model, "chain").programs}
+    assert not programs["forward_dynamics_prepared"].calls
+    module = load(render(model, languages=["python"]), "chain", tmp_path)
+    rng = np.random.default_rng(links)
+    for _ in range(STATES):
+        values = changed(model, rng)
+        c = module.prepare(module.DEFAULT_PARAMETERS.replace(**values))
+        numeric = lg.derive(model).numeric(values)
+        q, v, u = rng.normal(size=(3, links))
+        mass, bias = np.array(numeric.mass_matrix(q.tolist())), numeric.bias(q.tolist(), v.tolist())
+        found = module.forward_dynamics_prepared(c, q, v, u)
+        assert error(mass @ found + bias, u) < SOLVED
+        assert error(found, np.linalg.solve(mass, u - bias)) < SOLVED
+
+
+MOST = {"prepare": 341, "equations_prepared": 1602, "inverse_dynamics_prepared": 896}
+MOST |= {"mass_matrix_prepared": 758, "bias_prepared": 858, "equations": 1935}
 """Of 8 links, when last measured; without `prepare` equations took 1976."""
 
 
@@ -403,6 +423,10 @@ def test_what_cannot_be_divided_by_stays_a_status(tmp_path: Path) -> None:
     with pytest.raises(np.linalg.LinAlgError, match="static laws"):
         module.forward_dynamics(short, [], [1.0], [2.0])
     assert module.mass_matrix(short, []).shape == (1, 1)
+    with pytest.raises(np.linalg.LinAlgError, match="static laws"):
+        module.forward_dynamics_prepared(module.prepare(short), [], [1.0], [2.0])
+    several = module.DEFAULT_PARAMETERS.replace(R=[0.0, 50.0])
+    assert module.prepare(several).shape == (2, module.NK)
     c = compiled.call("prepare", [0.0, 1e-6], out=[(module.NK,)])
     with pytest.raises(Failed) as failed:
         compiled.call("forward_dynamics_prepared", c, [], [1.0], [2.0], out=[(1,)])
@@ -410,6 +434,46 @@ def test_what_cannot_be_divided_by_stays_a_status(tmp_path: Path) -> None:
     c = module.prepare(module.DEFAULT_PARAMETERS)
     found = module.forward_dynamics_prepared(c, [], [1.0], [2.0])
     np.testing.assert_allclose(found, 1e4, rtol=1e-12)
+
+
+def test_a_division_by_zero_fails_where_it_is_needed(tmp_path: Path) -> None:
+    model = chain(5)
+    width = model.parameter("width", 0.2)
+    model.spring("spring", joint="j0", stiffness=f"3 / {width.name}")
+    module = load(render(model, languages=["python"]), "chain", tmp_path)
+    p, q = module.DEFAULT_PARAMETERS.replace(width=0.0), np.linspace(0.1, 0.5, 5)
+    for run in (lambda: module.prepare(p), lambda: module.bias(p, q, q)):
+        with pytest.raises(ZeroDivisionError):
+            run()
+    assert np.all(np.isfinite(module.mass_matrix(p, q)))
+    programs = {program.name: program for program in module_for(model, "chain").programs}
+    assert programs["bias"].handed
+    assert not programs["mass_matrix"].handed
+
+
+def test_functions_of_parameters_are_constants(tmp_path: Path) -> None:
+    """Roots, sines, quotients and derived parameters: no function but of coordinates is left."""
+    model = lg.Model("formulas")
+    model.parameter("k", 30.0)
+    model.parameter("w", 2.0)
+    tilt = model.parameter("tilt", 0.3)
+    derived = model.parameter("f", "sqrt(k / w) + max(k, w) * exp(-w)")
+    body = model.body("b", mass="w / (1 + k)", mass_center=(0, 0, "cos(tilt)"))
+    place = model.ground.frame("place", rpy=(tilt, 0, 0))
+    model.revolute("hinge", between=(place, body), axis=(0, 1, 0))
+    model.spring("spring", joint="hinge", stiffness=derived)
+    model.law("law", joint="hinge", force="-k * x**3 / w - sin(tilt) * v / f")
+    module = module_for(model, "formulas")
+    prepared = [p for p in module.programs if p.name.endswith("_prepared")]
+    live = [n for p in prepared if isinstance(p, Program) for n in live_nodes(p)]
+    assert {n.op for n in live} <= {SYMBOL, "neg", "add", "sub", "mul", "div", "sin", "cos"}
+    assert all(n.a.a == "q" for n in live if n.op in ("sin", "cos"))
+    loaded = load(render(model, languages=["python"]), "formulas", tmp_path)
+    p = loaded.DEFAULT_PARAMETERS.replace(k=20.0, tilt=-0.4)
+    expected = lg.derive(model).numeric({"k": 20.0, "tilt": -0.4})
+    found = loaded.equations_prepared(loaded.prepare(p), [0.2], [0.7])
+    assert error(found[0], expected.mass_matrix([0.2])) < EXACT
+    assert error(found[1], expected.bias([0.2], [0.7])) < EXACT
 
 
 def test_a_singular_mass_matrix_of_symbols_is_a_status(tmp_path: Path) -> None:
