@@ -65,6 +65,12 @@ class Link:
         """Whether its joint's rotation is that to ground axes: an orientation in space of its own."""
         return self.place.in_space
 
+    @property
+    def numeric(self) -> bool:
+        """Whether the mass distribution is made of numbers."""
+        scalars = (self.moments.mass, *self.moments.first, *self.moments.inertia)
+        return all(isinstance(x, (int, float)) for x in scalars)
+
 
 class Seat(NamedTuple):
     """A constant place on a link, -1 for ground: its origin and its axes in the link's working frame."""
