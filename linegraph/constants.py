@@ -3,7 +3,8 @@
 With k for constants, of which parameters or numbers are all they depend on:
 
     x / k = x (1 / k)               (x k1) k2 = x (k1 k2)
-    x k1 + x k2 = x (k1 + k2)       x k + y k = (x + y) k       (x + k1) + (y + k2) = (x + y) + (k1 + k2)
+    (x k) y = (x y) k               x k1 + x k2 = x (k1 + k2)
+    x k + y k = (x + y) k           (x + k1) + (y + k2) = (x + y) + (k1 + k2)
 
 Nothing is rearranged that would take more operations.
 """
@@ -49,7 +50,7 @@ class Restructured:
 
     def _made(self, node: Node) -> Operand:
         if node.op == MUL:
-            return self._product(self._of(node.a), self._of(node.b))
+            return self._outward(node)
         if node.op == DIV:
             a, b = self._of(node.a), self._of(node.b)
             if self._varies_by(a, b):
@@ -57,6 +58,21 @@ class Restructured:
         if node.op in (ADD, SUB):
             return self._sum(node)
         return remade(self._dag, node, self._of)
+
+    def _outward(self, node: Node) -> Operand:
+        """``a b``; constant factors that nothing else needs go outward, where they may meet others."""
+        a, b = self._of(node.a), self._of(node.b)
+        if self._holds(a) or self._holds(b):
+            return self._product(a, b)
+        (x, k), (y, m) = self._freed(node.a), self._freed(node.b)
+        return self._product(self._dag.multiply(x, y), self._dag.multiply(k, m))
+
+    def _freed(self, original: Node) -> tuple[Operand, Operand]:
+        """What an operand has become; its factors, if nothing else needs it."""
+        x = self._of(original)
+        if isinstance(x, Node) and self._uses[original.index] == 1:
+            return self._factors(x)
+        return x, 1
 
     def _product(self, a: Operand, b: Operand) -> Operand:
         """``a b``; a constant goes to the constant factor that the other one has already."""

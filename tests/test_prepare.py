@@ -345,6 +345,23 @@ def test_operations_of_a_chain_of_symbols() -> None:
     assert {name: counted[name] for name in MOST if counted[name] > MOST[name]} == {}
 
 
+EXAMPLES_MOST = {
+    # equations without prepare, when it came in: 44, 57, 142, 943, 407
+    "double_pendulum": 24,
+    "furuta": 34,
+    "andrews_squeezer": 68,
+    "stewart_platform": 758,
+    "ship_arm": 351,
+}
+
+
+@pytest.mark.parametrize("name", EXAMPLES_MOST)
+def test_operations_of_examples(name: str) -> None:
+    module = module_for(modelfile.read(EXAMPLES / name / f"{name}.toml"), name)
+    counted = {p.name: p.operations for p in module.programs if isinstance(p, Program)}
+    assert counted["equations_prepared"] <= EXAMPLES_MOST[name]
+
+
 def test_long_functions_are_emitted_once() -> None:
     """What is long and takes about as much with all constants calls its twin, the rest is whole."""
     module = module_for(chain(8), "chain")
