@@ -140,6 +140,8 @@ def _body(
     module: Module, program: Program | Routine, statuses: dict[str, dict[int, str]]
 ) -> list[str]:
     """The lines between the braces of a definition."""
+    if program.handed:
+        return routines.handed(module, program, "c", f"{module.name}_")
     if isinstance(program, Routine):
         return routines.body(module, program, "c", f"{module.name}_")
     body = print_program(program, _NOTATION)

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
 _SIZES = {
     **dict.fromkeys(("q", "qdot", "q_on"), ("NQ",)),
-    **dict.fromkeys(("v", "a", "tau", "h", "f", "c", "v_on"), ("NV",)),
+    **dict.fromkeys(("v", "a", "tau", "h", "f", "rest", "v_on"), ("NV",)),
+    "c": ("NK",),
     "M": ("NV", "NV"),
     "u": ("NU",),
     "phi": ("NP",),

@@ -43,6 +43,7 @@ class Notation:
         functions: what each function is called, its bracket included.
         comment: the line that says a label.
         check: the lines that stop the function unless the first text is greater than the second.
+        divided: the function that divides even by zero, its bracket included; empty where ``/`` does.
     """
 
     before: str
@@ -51,6 +52,7 @@ class Notation:
     functions: Mapping[str, str]
     comment: Callable[[str], str]
     check: Callable[[str, str, Check], list[str]]
+    divided: str = ""
 
 
 @dataclass(frozen=True)
@@ -101,6 +103,7 @@ class _Printer:
     def __init__(self, program: Program, notation: Notation) -> None:
         self.notation = notation
         self.turned = program.turned
+        self.guarded = program.guarded if notation.divided else frozenset[int]()
         self.known: dict[int, str] = {}
         self.used: set[str] = set()
 
@@ -150,6 +153,8 @@ class _Printer:
         infix = _INFIX.get(node.op)
         if infix is None:
             return self.prefix(node)
+        if node.index in self.guarded:
+            return f"{self.notation.divided}{self.text(node.a)}, {self.text(node.b)})", _ATOM
         sign, level, commutes = infix
         a, b = node.a, node.b
         if sign == " - " and node.index in self.turned:

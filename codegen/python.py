@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 from codegen import layout, prose, routines, templates
 from codegen.printer import Notation, number, print_program
 from linegraph.functions import ARITY
-from linegraph.program import Routine
+from linegraph.program import Program, Routine
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from linegraph.program import Argument, Check, Module, Program, Quantity, Result
+    from linegraph.program import Argument, Check, Module, Quantity, Result
 
 _WIDTH = 96
 
@@ -34,6 +34,7 @@ def render(module: Module) -> dict[str, str]:
         binary=_called(bodies, 2),
         name=module.name,
         helpers=alone,
+        guarded=any(isinstance(x, Program) and x.guarded for x in module.programs),
         quaternions=routines.quaternions(module),
         head=_indented(layout.head(module), 0),
         counts=list(layout.counts(module).items()),
@@ -164,13 +165,17 @@ def _join(module: Module, result: Result) -> str:
 
 def _sizes(program: Program | Routine) -> str:
     """Of a routine, which takes one state at a time, how many components each result has; else nothing."""
-    if not isinstance(program, Routine) or program.algorithm in routines.BATCHED:
+    if not isinstance(program, Routine) or program.handed:
+        return ""
+    if program.algorithm in routines.BATCHED:
         return ""
     return ", ".join(str(math.prod(result.shape)) for result in program.results) + ","
 
 
 def _body(module: Module, program: Program | Routine) -> list[str]:
     """The lines of a private function: arguments and results are lists of components."""
+    if program.handed:
+        return routines.handed(module, program, "python", "_")
     if isinstance(program, Routine):
         return routines.body(module, program, "python", "_", literal)
     lines = []
@@ -211,5 +216,6 @@ _NOTATION = Notation(
     functions={name: f"_{name}(" for name in ARITY},
     comment=lambda label: f"    # -- {prose.plain(label)}",
     check=_check,
+    divided="_ratio(",
 )
 """The dashes keep a label from being read as an instruction to a tool, such as ``type: ignore``."""

@@ -15,7 +15,7 @@ from linegraph.program import Routine
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from linegraph.program import Module
+    from linegraph.program import Module, Program
 
 HELPERS = {
     "constrained_dynamics": ("eliminate", "constrained"),
@@ -81,15 +81,32 @@ def body(
     return lines
 
 
+def handed(module: Module, program: Program | Routine, language: str, prefix: str) -> list[str]:
+    """The lines of a function that only prepares the constants and calls the one that takes them."""
+    results = [result.name for result in program.results] if language == "c" else []
+    text = templates.fill(
+        f"{language}/handed.jinja",
+        macro=module.name.upper(),
+        prefix=prefix,
+        function=program.handed,
+        others=[a.name for a in program.arguments if a.name != "p"] + results,
+        status=program.status or bool(layout.statuses(module)[program.name]),
+    )
+    return text.rstrip("\n").split("\n")
+
+
 def _calling(module: Module, routine: Routine, prefix: str) -> Callable[..., str]:
     """How a template calls another function.
 
     ``call("bias", "h", v="v_on")`` gives ``arm_bias(p, q, v_on, h)``.
-    The first names are those of the results; arguments have their own names unless renamed.
+    The first names are those of the results; arguments have their own names unless renamed. One that takes
+    the constants of `prepare` calls others that do.
     """
     programs = {program.name: program for program in module.programs}
 
     def call(name: str, *results: str, **renamed: str) -> str:
+        if name not in routine.uses:
+            name += "_prepared"
         if name not in routine.uses:
             raise ValueError(f"{routine.name} does not say that it calls {name}")
         given = [renamed.get(x.name, x.name) for x in programs[name].arguments]

@@ -27,6 +27,7 @@ from linegraph.loads import applied, efforts
 from linegraph.paper import paper_matrices
 from linegraph.program import Program
 from linegraph.programs import module_of
+from linegraph.prologue import PREPARE
 from linegraph.united import network_entries
 
 if TYPE_CHECKING:
@@ -144,10 +145,14 @@ class _State:
 
     def run(self, module: Module, name: str) -> list[Vector]:
         """The results of one of the programs that would be emitted."""
-        program = next(p for p in module.programs if isinstance(p, Program) and p.name == name)
+        programs = {p.name: p for p in module.programs if isinstance(p, Program)}
+        program = programs[name]
         exchange = self.numeric.exchange(self.q, self.v)
         loop = exchange.solved if exchange is not None and exchange.network.loop else []
         given = {"q": self.q, "v": self.v, "loop": loop, **self.algebra.arguments}
+        if program.handed:
+            (given["c"],) = run(programs[PREPARE], given)
+            program = programs[program.handed]
         return run(program, given)
 
     def constraint_difference(self, module: Module) -> float:

@@ -158,11 +158,11 @@ def reduction(f: Functions) -> tuple[Program | Routine, ...]:
         f,
         "reduction",
         "Velocities and accelerations from the independent ones: v = T w (+ what is prescribed), "
-        "vdot = T wdot + c.",
+        "vdot = T wdot + rest.",
         ("q", "v"),
         (
             Result("T", (n, k), (), "all velocities for unit w"),
-            Result("c", (n,), (), "vdot at wdot = 0"),
+            Result("rest", (n,), (), "vdot at wdot = 0"),
         ),
         "reduction",
         (NOT_DETERMINED,),
@@ -172,7 +172,7 @@ def reduction(f: Functions) -> tuple[Program | Routine, ...]:
         f,
         "reduced_equations",
         "Equations of motion in the independent coordinates, Mr wdot + hr = T^T Q: Mr = T^T M T, "
-        "hr = T^T (h + M c).",
+        "hr = T^T (h + M rest).",
         ("q", "v"),
         (Result("Mr", (k, k), (), "reduced mass matrix"), Result("hr", (k,), (), "reduced bias")),
         "reduced_equations",

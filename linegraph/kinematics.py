@@ -184,17 +184,14 @@ class KinematicTree:
     def regrouped(self) -> KinematicTree:
         """The same M and h from fewer parameters: what a parent can carry is handed to it, leaf to root.
 
-        Exact for the equations of motion, not for joint reactions. Only numbers are moved: of symbols
-        the sums would be computed anew at every call.
+        Exact for the equations of motion, not for joint reactions. Where links stand and what they weigh
+        depends on parameters at most, so that of symbols the sums are computed once, by `prepare`.
         """
         links = list(self.links)
         in_plane = _in_plane(links)
         for i in reversed(range(len(links))):
             link = links[i]
             parent = links[link.parent] if link.parent >= 0 else None
-            fixed = all(isinstance(x, (int, float)) for x in link.at)
-            if not (fixed and link.numeric and (parent is None or parent.numeric)):
-                continue
             # of a link that does not turn with its parent only the mass can be handed over
             split = point_apart if link.place.level else link.joint.regroup
             kept, handed = split(link.moments)

@@ -74,6 +74,9 @@ class Program:
         steps: the nodes that get a name of their own, in an order in which each follows its operands.
         status: whether it returns a status in languages without exceptions, even if no check can fail.
         turned: indices of differences a - b that are computed as b - a, since only their negative is used.
+        handed: the function that does the same from the constants of `prepare`, where its text is not to
+            stand twice; empty where the function is emitted whole.
+        guarded: indices of divisions that may be by zero, since what uses them checks that first.
     """
 
     name: str
@@ -85,6 +88,8 @@ class Program:
     checks: tuple[Check, ...] = ()
     calls: tuple[Call, ...] = ()
     status: bool = False
+    handed: str = ""
+    guarded: frozenset[int] = frozenset()
 
     @property
     def operations(self) -> int:
@@ -101,6 +106,7 @@ class Routine:
         statuses: what each status other than 0 means.
         uses: the functions it calls.
         details: what the algorithm needs to know of this module: numbers and lists of numbers.
+        handed: as of `Program`.
     """
 
     name: str
@@ -113,6 +119,7 @@ class Routine:
     details: tuple[tuple[str, Any], ...] = ()
     status: bool = True
     calls: tuple[Call, ...] = ()
+    handed: str = ""
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,8 @@ from linegraph.program import (
     Result,
     Routine,
 )
-from linegraph.regularity import SINGULAR, is_solid
+from linegraph.prologue import COUNT, with_prologue
+from linegraph.regularity import SINGULAR, is_solid, sample_tree
 from linegraph.shared import ARGUMENTS, Functions
 from linegraph.united import (
     united_inverse_dynamics,
@@ -61,6 +62,9 @@ def module_of(
     chosen = [key for key in PROGRAMS if key in asked]
     programs = tuple(program for key in chosen for program in PROGRAMS[key](functions))
     functions.dag.release()
+    constants = 0
+    if "p" in functions.head and only is None:
+        programs, constants = with_prologue(programs)
     tree = functions.tree
     closed = closed_programs.listings(functions) if tree.closed else ()
     whole = (network_programs.state_listing(tree),) if "rhs" in chosen else ()
@@ -78,7 +82,10 @@ def module_of(
         time=derivation.model.depends_on_time,
         programs=programs,
         listings=(*whole, *closed, *edge_programs.listings(functions, chosen)),
-        counts=closed_programs.counts(functions) if tree.closed else (),
+        counts=(
+            *(closed_programs.counts(functions) if tree.closed else ()),
+            *([(COUNT, constants)] if constants else []),
+        ),
     )
 
 
@@ -113,9 +120,9 @@ def _forward_dynamics(f: Functions) -> Program:
     """By factored mass matrix or by articulated inertias, whichever takes fewer operations.
 
     With solid bodies M cannot become singular, so articulated inertias need no scale to judge pivots by;
-    where some link is not solid, the factors do the judging.
+    where some link is not solid for the parameters' own values, the factors do the judging.
     """
-    solid = all(is_solid(link) for link in f.tree.links if link.numeric)
+    solid = all(map(is_solid, sample_tree(f.model, f.derivation.formulation).links))
     if f.armatures is None or f.tree.coupled or f.tree.levelled or not solid:
         return _factored(f)
     articulated = _articulated(f)

@@ -31,10 +31,7 @@ def require_regular(model: Model, formulation: Formulation) -> None:
     Raises:
         ModelError: names the joint.
     """
-    anywhere = Floats(t=0.37, u=_Anything())
-    tree = kinematic_tree(
-        model, formulation, anywhere, sample_values(model.parameters.values(), anywhere)
-    )
+    tree = sample_tree(model, formulation)
     if not tree.velocities:
         raise ModelError(f'model "{model.name}"', _nothing(model))
     if tree.closed or all(is_solid(link) for link in tree.links):
@@ -43,6 +40,13 @@ def require_regular(model: Model, formulation: Formulation) -> None:
     if all(failures):
         index, pivot = failures[-1] or (0, 0.0)
         raise _refusal(_link_of(tree, index), pivot)
+
+
+def sample_tree(model: Model, formulation: Formulation) -> KinematicTree:
+    """The links in numbers: the parameters' own values where they have some, any time, any inputs."""
+    anywhere = Floats(t=0.37, u=_Anything())
+    values = sample_values(model.parameters.values(), anywhere)
+    return kinematic_tree(model, formulation, anywhere, values)
 
 
 def _nothing(model: Model) -> str:
