@@ -252,10 +252,9 @@ def carried_in_plane(moments: Moments, rotation: Rotation, at: Vector) -> Moment
     b = rotation.out(moments.first)
     first = vector.add(b, vector.scale(moments.mass, at))
     about = moments.inertia[5]
-    if moments.mass == 0:
-        about = about + 2 * (at[0] * b[0] + at[1] * b[1])
-    else:
-        about = about + (at[0] * (b[0] + first[0]) + at[1] * (b[1] + first[1]))
+    # one after the other: with the first, the sum is what M has beside its diagonal
+    about = about + (at[0] * b[0] + at[1] * b[1])
+    about = about + (at[0] * first[0] + at[1] * first[1])
     return Moments(moments.mass, first, (about, 0, 0, 0, 0, 0))
 
 

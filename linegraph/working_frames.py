@@ -24,11 +24,12 @@ from linegraph.body import Placement
 from linegraph.expansion import expanded
 from linegraph.kinematics import KinematicTree, Link, carried, compose, parallel
 from linegraph.rotation import IDENTITY_MATRIX, Rotation, Turn, product, rotation_of, snapped
-from linegraph.vector import ZERO, Matrix, Vector, add, cross, subtract
+from linegraph.vector import ZERO, Matrix, Scalar, Vector, add, cross, subtract
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from linegraph.joints import Moments
     from linegraph.orthogonality import Arm
 
 DUST = 4e-15
@@ -39,7 +40,11 @@ WELL_APART = 0.1
 say where to turn or how far to slide: digits would be lost."""
 
 FULL = 6
-"""Moments of a link, of the ten, from which on turning them costs less than turning what they cause."""
+"""Moments of a link that carries none, of the ten, from which on turning them costs less than turning what
+they cause."""
+
+LONG = 5
+"""Links in a plane, from ground on, from which on angles to ground cost less than angles between links."""
 
 SWEEPS = 3
 """A frame that is slid moves the arms on both sides, so the links are gone through more than once."""
@@ -85,11 +90,7 @@ def shortened(tree: KinematicTree) -> Shortened:
         moved = Placement(rotation_of(turns[k]).out(shifts[k]), turns[k])
         poses.append(compose(Placement(ZERO, turn.matrix()), moved, DUST))
     short = replace(tree, links=tuple(links)).regrouped()
-    stilled = tuple(
-        replace(link, still=_run_goes_on(link, [short.links[c] for c in children[i]]))
-        for i, link in enumerate(short.links)
-    )
-    return Shortened(replace(short, links=stilled), apart.last, tuple(poses))
+    return Shortened(_stilled(short, children), apart.last, tuple(poses))
 
 
 def _children(links: Sequence[Link]) -> list[list[int]]:
@@ -98,18 +99,6 @@ def _children(links: Sequence[Link]) -> list[list[int]]:
         if link.parent >= 0:
             found[link.parent].append(i)
     return found
-
-
-def _run_goes_on(link: Link, children: Sequence[Link]) -> bool:
-    """Whether a link's axis is that of all links it carries: none needs axes that turn with it.
-
-    One that carries none may as well be still, unless its own moments are so few that turning them would
-    make many of few.
-    """
-    few = sum(x != 0 for x in (*link.moments.first, *link.moments.second)) < FULL
-    if not children and few and not link.in_plane:
-        return False
-    return link.joint.turns and all(parallel(child) for child in children)
 
 
 def _weights(links: Sequence[Link]) -> list[int]:
@@ -121,10 +110,45 @@ def _weights(links: Sequence[Link]) -> list[int]:
     return [18 + 4 * n if link.parent >= 0 else 0 for n, link in zip(columns, links, strict=True)]
 
 
-def _numeric(link: Link) -> bool:
-    """Whether all that is constant of a link is made of numbers."""
-    entries = (*link.at, *(x for row in link.rotation.matrix() for x in row))
-    return link.numeric and all(isinstance(x, (int, float)) for x in entries)
+def _oriented(link: Link) -> bool:
+    """Whether its rotation is made of numbers; arms and moments may be what `prepare` makes of parameters."""
+    return _known(x for row in link.rotation.matrix() for x in row)
+
+
+def _known(entries: Iterable[Scalar]) -> bool:
+    return all(isinstance(x, (int, float)) for x in entries)
+
+
+# keeping still
+
+
+def _stilled(tree: KinematicTree, children: Sequence[Sequence[int]]) -> KinematicTree:
+    """Say of each link whether its working axes turn with it."""
+    links = tree.links
+    lengths = _lengths_in_plane(links)
+    found = []
+    for i, link in enumerate(links):
+        short = link.in_plane and lengths[i] < LONG
+        if children[i]:
+            still = not short and all(parallel(links[c]) for c in children[i])
+        else:
+            given = [x != 0 for x in (*link.moments.first, *link.moments.second)]
+            still = all(given[:2]) if short else link.in_plane or sum(given) >= FULL
+        found.append(replace(link, still=still and link.joint.turns))
+    return replace(tree, links=tuple(found))
+
+
+def _lengths_in_plane(links: Sequence[Link]) -> list[int]:
+    """Of each link that moves in a plane, how many there are on the longest way through it."""
+    inward = [0] * len(links)
+    for i, link in enumerate(links):
+        if link.in_plane:
+            inward[i] = 1 + (inward[link.parent] if link.parent >= 0 else 0)
+    longest = list(inward)
+    for i in reversed(range(len(links))):
+        if links[i].in_plane and links[i].parent >= 0:
+            longest[links[i].parent] = max(longest[links[i].parent], longest[i])
+    return longest
 
 
 # turning
@@ -138,24 +162,37 @@ def _turned(
     turns: list[Matrix] = [IDENTITY_MATRIX] * len(links)
     for i, link in enumerate(links):
         carried_by = [links[c] for c in children[i]]
-        free = link.joint.turns and all(map(_numeric, (link, *carried_by)))
-        if free and carried_by:
-            costs = [weights[c] for c in children[i]]
-            angle = min(
-                _candidates(carried_by), key=lambda b: round(_cost(b, carried_by, costs), 6)
-            )
+        if link.joint.turns and all(map(_oriented, (link, *carried_by))):
+            angle = _best_angle(link, carried_by, [weights[c] for c in children[i]])
             turns[i] = _about_z(angle)
             if angle:
-                moments = carried(link.moments, rotation_of(vector.transpose(turns[i])), ZERO)
+                moments = _seen_turned(link.moments, turns[i])
                 links[i] = replace(_angle_shifted(link, angle), moments=moments)
         back = vector.transpose(turns[i])
         for c in children[i]:
-            if _numeric(links[c]):
+            if _oriented(links[c]):
                 links[c] = _seen_from(links[c], back)
     for i, link in enumerate(links):
-        if link.parent < 0 and _numeric(link):
+        if link.parent < 0 and _oriented(link):
             links[i] = _seen_from(link, IDENTITY_MATRIX)
     return links, turns
+
+
+def _best_angle(link: Link, children: Sequence[Link], weights: Sequence[int]) -> float:
+    """The angle about z by which a link's working frame is turned best.
+
+    One that carries none is turned to its mass: one component of its first moment is left.
+    """
+    x, y, _ = link.moments.first
+    if not children:
+        return math.atan2(y, x) if _known((x, y)) and x != 0 and y != 0 else 0.0
+    return min(_candidates(children), key=lambda b: round(_cost(b, children, weights), 6))
+
+
+def _seen_turned(moments: Moments, turn: Matrix) -> Moments:
+    """Moments in axes that are turned."""
+    seen = carried(moments, rotation_of(vector.transpose(turn)), ZERO)
+    return seen._replace(first=_swept(seen.first, moments.first))
 
 
 def _candidates(children: Sequence[Link]) -> list[float]:
@@ -165,7 +202,7 @@ def _candidates(children: Sequence[Link]) -> list[float]:
         m = child.rotation.matrix()
         if any(x not in (0, 1, -1) for row in m for x in row) and _apart(m):
             found.append(math.atan2(m[0][2], -m[1][2]))
-        if child.at[0] != 0 and child.at[1] != 0:
+        if _known(child.at) and child.at[0] != 0 and child.at[1] != 0:
             found.append(math.atan2(child.at[1], child.at[0]))
     return found
 
@@ -245,6 +282,8 @@ def _angle_shifted(link: Link, angle: float) -> Link:
 
 def _swept(turned: Vector, original: Vector) -> Vector:
     """Drop rounding dust where an exact zero belongs."""
+    if not _known((*turned, *original)):
+        return turned
     scale = max(abs(x) for x in original)
     x, y, z = (0 if abs(c) <= DUST * scale else c for c in turned)
     return (x, y, z)
@@ -260,7 +299,7 @@ def _slid(links: list[Link], children: Sequence[Sequence[int]]) -> tuple[list[Li
     for _ in range(SWEEPS):
         for i in reversed(range(len(links))):
             carried_by = [links[c] for c in children[i]]
-            if not (links[i].joint.slides and all(map(_numeric, (links[i], *carried_by)))):
+            if not (links[i].joint.slides and all(map(_oriented, (links[i], *carried_by)))):
                 continue
             costs = [weights[c] for c in children[i]]
             for axis in links[i].joint.slides:
@@ -280,12 +319,13 @@ def _best_shift(
 ) -> Vector:
     """The shift along an axis of a link's frame that leaves its arm and its children's the cheapest."""
     along = link.rotation.out(IDENTITY_MATRIX[axis])
-    found = [0.0]
-    given = zip(link.at, along, strict=True)
-    found += [-x / d for x, d in given if x != 0 and abs(d) > WELL_APART]
+    found: list[Scalar] = [0]
+    for x, d in zip(link.at, along, strict=True):
+        if x != 0 and (abs(d) > WELL_APART if _known((x,)) else d in (1, -1)):
+            found.append(-x / d)
     found += [child.at[axis] for child in children if child.at[axis] != 0]
 
-    def cost(s: float) -> float:
+    def cost(s: Scalar) -> float:
         shift = vector.scale(s, IDENTITY_MATRIX[axis])
         own = _moved_origin(link, shift)
         arms = [own.at, *(_seen_shifted(child, shift).at for child in children)]
