@@ -86,19 +86,20 @@ def number(x: Number) -> str:
 
 def print_program(program: Program, notation: Notation) -> Body:
     """All lines of a program in one language."""
-    printer = _Printer(program, notation)
+    printer = Printer(program, notation)
     lines = printer.assignments(program)
     results = [[printer.text(x) for x in result.entries] for result in program.results]
     return Body(lines, results, frozenset(printer.used))
 
 
-class _Printer:
+class Printer:
     """Prints the nodes of one program, in order; `known` holds what stands for a node from then on.
 
     Methods call each other only for nodes without a name, whose depth `INLINE_LIMIT` bounds.
     """
 
     def __init__(self, program: Program, notation: Notation) -> None:
+        """Nothing is known before the first line."""
         self.notation = notation
         self.turned = program.turned
         self.known: dict[int, str] = {}
