@@ -6,10 +6,9 @@ registers; the others one by one where they become known.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from codegen.order import Reads, Step
+from codegen.order import Step
 from linegraph.expression import SYMBOL, Node
 from linegraph.functions import ARITY
 from linegraph.program import INLINE_LIMIT
@@ -72,7 +71,7 @@ class Angles:
     def without(self, items: Sequence[Item]) -> list[Item]:
         """The lines, less what only angles known elsewhere need."""
         changed = [
-            replace(x, reads=_NOTHING)
+            x._replace(needs=())
             if isinstance(x, Step) and self.has(x.node) and not self.comes_first(x.node)
             else x
             for x in items
@@ -81,12 +80,9 @@ class Angles:
         kept: list[Item] = []
         for item in reversed(changed):
             if not isinstance(item, Step) or item.node.index in needed:
-                needed.update(item.reads.steps)
+                needed.update(item.needs)
                 kept.append(item)
         return kept[::-1]
-
-
-_NOTHING = Reads((), frozenset(), 1)
 
 
 def next_index(items: Sequence[Item], key: int) -> int:

@@ -8,13 +8,12 @@ the tree is finished before the next begins. An entry of a result is written as 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.expression import SYMBOL, Node
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Iterable, Sequence
 
     from linegraph.expression import Operand
     from linegraph.program import Check, Program
@@ -22,67 +21,47 @@ if TYPE_CHECKING:
 _PARTNERS = {"sin": "cos", "cos": "sin"}
 
 
-@dataclass(frozen=True)
-class Reads:
-    """What an expression is made of.
+class Step(NamedTuple):
+    """A node gets a name; `needs` are the indices of the named nodes it is computed from."""
 
-    Attributes:
-        steps: the indices of the nodes with a name that it reads.
-        arguments: the names of the arguments and local arrays that it reads.
-        cost: how many operations it has.
-    """
-
-    steps: tuple[int, ...]
-    arguments: frozenset[str]
+    node: Node
+    needs: Sequence[int]
     cost: int
 
 
-@dataclass(frozen=True)
-class Step:
-    """A node gets a name."""
-
-    node: Node
-    reads: Reads
-
-
-@dataclass(frozen=True)
-class Entry:
+class Entry(NamedTuple):
     """An entry of a result is written."""
 
     result: str
     place: int
     value: Operand
-    reads: Reads
+    needs: Sequence[int]
+    cost: int
 
 
-@dataclass(frozen=True)
-class Guard:
+class Guard(NamedTuple):
     """A check; nothing is written before the last one, since a function that fails writes nothing."""
 
     check: Check
-    reads: Reads
+    needs: Sequence[int]
+    cost: int
 
 
 Item = Step | Entry | Guard
 
 
-def arranged(program: Program, live: Sequence[Node], forced: Callable[[Node], bool]) -> list[Item]:
-    """All lines of a program in order.
-
-    Args:
-        program: the program.
-        live: all its nodes, each after its operands.
-        forced: which nodes get a name in any case.
-    """
+def arranged(program: Program, forced: Iterable[Node]) -> list[Item]:
+    """All lines of a program in order; the nodes `forced` get a name in any case."""
     named = {node.index: node for node in program.steps}
-    named |= {node.index: node for node in (*paired(live), *filter(forced, live))}
-    nodes = [named[index] for index in sorted(named)]
-    known = frozenset(named)
-    steps = {node.index: Step(node, _reads((node.a, node.b), known)) for node in nodes}
-    order = [steps[index] for index in _together(_ordered(nodes, steps), named)]
-    guards = [Guard(x, _reads((x.node, x.bound), known, whole=True)) for x in program.checks]
+    named |= {node.index: node for node in forced}
+    steps = {index: Step(named[index], *_read_by(named[index], named)) for index in sorted(named)}
+    order = [steps[index] for index in _together(_ordered(list(steps.values())), named)]
+    guards = []
+    for check in program.checks:
+        needs, cost = _reads((check.node, check.bound), named)
+        guards.append(Guard(check, needs, cost))
     entries = [
-        Entry(result.name, place, value, _reads((value,), known, whole=True))
+        Entry(result.name, place, value, *_reads((value,), named, 1))
         for result in program.results
         for place, value in enumerate(result.entries)
     ]
@@ -95,52 +74,57 @@ def paired(live: Iterable[Node]) -> list[Node]:
     return [node for (op, angle), node in waves.items() if (_PARTNERS[op], angle) in waves]
 
 
-def _reads(operands: Iterable[Operand | None], named: frozenset[int], whole: bool = False) -> Reads:
-    """What the text of an operation reads; of `whole` operands, which may be names themselves."""
-    steps: dict[int, None] = {}
-    arguments: set[str] = set()
-    cost = 0 if whole else 1
-    pending = [x for x in operands if isinstance(x, Node)]
+def _read_by(node: Node, named: dict[int, Node]) -> tuple[Sequence[int], int]:
+    """What the operation of a node reads, and how many operations its line has."""
+    return _reads((node.a, node.b), named, 1)
+
+
+def _reads(
+    operands: Iterable[object], named: dict[int, Node], cost: int = 0
+) -> tuple[Sequence[int], int]:
+    """The indices of the named nodes that an expression reads, and its cost."""
+    needs: list[int] = []
+    pending = list(operands)
     while pending:
         node = pending.pop()
-        if node.index in named:
-            steps[node.index] = None
-        elif node.op == SYMBOL:
-            arguments.add(str(node.a))
-        else:
-            cost += 1
-            pending += [x for x in (node.a, node.b) if isinstance(x, Node)]
-    return Reads(tuple(sorted(steps)), frozenset(arguments), cost)
+        if isinstance(node, Node):
+            if node.index in named:
+                needs.append(node.index)
+            elif node.op != SYMBOL:
+                cost += 1
+                pending.append(node.a)
+                pending.append(node.b)
+    return needs, cost
 
 
-def _ordered(nodes: Sequence[Node], steps: dict[int, Step]) -> list[int]:
+def _ordered(steps: Sequence[Step]) -> list[int]:
     """The indices of all named nodes: blocks of one label, each right before the first that needs it."""
     blocks: list[list[int]] = []
+    needs: list[set[int]] = []
     block_of: dict[int, int] = {}
     label = None
-    for node in nodes:
+    for step in steps:
+        node = step.node
         if node.label != label:
             label = node.label
             blocks.append([])
+            needs.append(set())
         blocks[-1].append(node.index)
+        needs[-1].update([block_of[index] for index in step.needs])
         block_of[node.index] = len(blocks) - 1
-    needs = [
-        sorted({block_of[x] for index in block for x in steps[index].reads.steps})
-        for block in blocks
-    ]
     order: list[int] = []
     done = [False] * len(blocks)
+    waiting = [sorted(found - {place}, reverse=True) for place, found in enumerate(needs)]
     # from the last block on, since what is needed by many, such as the base, comes last by itself
     for last in reversed(range(len(blocks))):
         pending = [last]
         while pending:
             block = pending[-1]
-            missing = next((x for x in needs[block] if not done[x] and x != block), None)
-            if missing is not None:
-                pending.append(missing)
-                continue
-            pending.pop()
-            if not done[block]:
+            if done[block]:
+                pending.pop()
+            elif waiting[block]:
+                pending.append(waiting[block].pop())
+            else:
                 done[block] = True
                 order += blocks[block]
     return order
@@ -166,23 +150,22 @@ def _together(order: Sequence[int], named: dict[int, Node]) -> list[int]:
 def _placed(order: list[Step], guards: list[Guard], entries: list[Entry]) -> list[Item]:
     """Checks as early as can be; entries, too, but none before the last check; constants at the end."""
     at = {step.node.index: place for place, step in enumerate(order)}
-
-    def known_after(item: Item) -> int:
-        return max((at[x] for x in item.reads.steps), default=-1)
-
     after: dict[int, list[Item]] = {}
     last = -1
     for guard in guards:
-        after.setdefault(known_after(guard), []).append(guard)
-        last = max(last, known_after(guard))
+        known = max((at[x] for x in guard.needs), default=-1)
+        after.setdefault(known, []).append(guard)
+        last = max(last, known)
     constants: list[Item] = []
     for entry in entries:
-        if entry.reads.steps:
-            after.setdefault(max(known_after(entry), last), []).append(entry)
+        if entry.needs:
+            known = max(at[x] for x in entry.needs)
+            after.setdefault(max(known, last), []).append(entry)
         else:
             constants.append(entry)
     items: list[Item] = [*after.get(-1, ())]
     for place, step in enumerate(order):
         items.append(step)
-        items += after.get(place, ())
+        if place in after:
+            items += after[place]
     return items + constants

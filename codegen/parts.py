@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from codegen.order import Entry, Step
+from codegen.order import Step
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -47,9 +47,12 @@ class Places:
     count: dict[str, int]
 
 
-def cut(items: Sequence[Item], size: int = SIZE) -> list[Part]:
+def cut(items: Sequence[Item]) -> list[Part]:
     """The lines in parts of about equal size; one part if there are not many."""
-    starts = [0, *_cuts(items, size), len(items)]
+    cuts = _cuts(items, SIZE)
+    if not cuts:
+        return [Part(items, frozenset(), frozenset())]
+    starts = [0, *cuts, len(items)]
     slices = [items[a:b] for a, b in pairwise(starts)]
     home = {
         item.node.index: number
@@ -58,7 +61,7 @@ def cut(items: Sequence[Item], size: int = SIZE) -> list[Part]:
         if isinstance(item, Step)
     }
     given = [
-        frozenset(x for item in lines for x in item.reads.steps if home[x] != number)
+        frozenset(x for item in lines for x in item.needs if home[x] != number)
         for number, lines in enumerate(slices)
     ]
     needed = frozenset().union(*given)
@@ -104,7 +107,7 @@ def _cuts(items: Sequence[Item], size: int) -> list[int]:
     """Before which lines a new part begins."""
     before = [0]
     for item in items:
-        before.append(before[-1] + item.reads.cost + isinstance(item, Entry))
+        before.append(before[-1] + item.cost)
     total = before[-1]
     if total <= (1 + _SPREAD) * size:
         return []
@@ -115,10 +118,10 @@ def _cuts(items: Sequence[Item], size: int) -> list[int]:
     start = 0
     for number in range(1, count):
         low, high = ((number + sign * _SPREAD) * unit for sign in (-1, 1))
-        while before[start] < low:
+        while start + 1 < len(items) and before[start] < low:
             start += 1
         stop = start
-        while before[stop + 1] <= high:
+        while stop + 1 < len(items) and before[stop + 1] <= high:
             stop += 1
         found.append(min(range(start, stop + 1), key=lambda k: (alive[k], k)))
     return found
@@ -126,7 +129,7 @@ def _cuts(items: Sequence[Item], size: int) -> list[int]:
 
 def _alive(items: Sequence[Item]) -> list[int]:
     """Before each line: how many values are known and still needed."""
-    last = {x: place for place, item in enumerate(items) for x in item.reads.steps}
+    last = {x: place for place, item in enumerate(items) for x in item.needs}
     change = [0] * (len(items) + 2)
     for place, item in enumerate(items):
         if isinstance(item, Step) and item.node.index in last:

@@ -103,6 +103,7 @@ class Printer:
         self.notation = notation
         self.turned = program.turned
         self.known: dict[int, str] = {}
+        self.read: dict[int, str] = {}
         self.used: set[str] = set()
 
     def assignments(self, program: Program) -> list[str]:
@@ -125,6 +126,12 @@ class Printer:
                 for check in due[count]:
                     lines += self.check(check)
         return lines
+
+    def begin(self) -> set[str]:
+        """Begin a new `used`, which is returned."""
+        self.read = {}
+        self.used = set()
+        return self.used
 
     def check(self, check: Check) -> list[str]:
         """The lines of one check."""
@@ -197,6 +204,9 @@ class Printer:
 
     def symbol(self, node: Node) -> str:
         """What is read: an element of an array, a parameter, or the time."""
+        found = self.read.get(node.index)
+        if found is not None:
+            return found
         argument, place = str(node.a), node.b
         self.used.add(argument)
         if place is None:
@@ -205,7 +215,7 @@ class Printer:
             text = f"{argument}[{place}]"
         else:
             text = f"{self.notation.member}{place}"
-        self.known[node.index] = text
+        self.read[node.index] = text
         return text
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from codegen import declare
 from codegen.angles import Angles
-from codegen.order import Entry, Guard, Step, arranged
+from codegen.order import Entry, Guard, Step, arranged, paired
 from codegen.parts import cut, places
 from codegen.printer import Notation, Printer, number
 from linegraph.expression import SYMBOL, Node
@@ -67,7 +67,9 @@ class _Writer:
         self.prefix, self.macro = module.name, module.name.upper()
         live = live_nodes(program)
         self.wide = _wide(program, live) if kind.wide else frozenset()
-        items = arranged(program, live, self.apart)
+        special = kind.wide or kind.inline
+        forced = filter(self.apart, live) if special else paired(live)
+        items = arranged(program, forced)
         angles = (
             Angles(items, self.wide if kind.wide else None) if kind.inline else Angles([], None)
         )
@@ -75,6 +77,7 @@ class _Writer:
         self.printer = Printer(program, _NOTATION)
         self.count = 0
         self.zero = False
+        self.read: set[str] = set()
 
     def apart(self, node: Node) -> bool:
         """Whether a node needs a line of its own: its function is more than a call that gives a number."""
@@ -92,6 +95,7 @@ class _Writer:
         parts = cut(self.items)
         made: list[Definition] = []
         if len(parts) == 1:
+            self.read = self.printer.begin()
             main = self.lines(parts[0], {})
         else:
             main, made = self.split(parts)
@@ -128,8 +132,8 @@ class _Writer:
 
     def used(self) -> set[str]:
         """The names of the arguments and local arrays that are read."""
-        read = {name for item in self.items for name in item.reads.arguments}
-        return read.union(self.angles.reads, *(call.arguments for call in self.program.calls))
+        given = (call.arguments for call in self.program.calls)
+        return self.read.union(self.angles.reads, *given)
 
     def sines(self) -> list[str]:
         """Sines and cosines of all angles that are known from the start, side by side."""
@@ -162,8 +166,10 @@ class _Writer:
         ]
         made: list[Definition] = []
         for place, part in enumerate(parts, 1):
+            read = self.printer.begin()
             body = self.lines(part, of)
-            names, declared = self.parameters(part, of, found.count, arrays)
+            self.read |= read
+            names, declared = self.parameters(part, read, of, found.count, arrays)
             fails = any(isinstance(item, Guard) for item in part.items)
             name = f"{self.prefix}_{self.program.name}{'_lanes' * self.kind.wide}_part{place}"
             start = f"{self.macro}_PART {'int' if fails else 'void'} {name}("
@@ -174,12 +180,12 @@ class _Writer:
     def parameters(
         self,
         part: Part,
+        read: set[str],
         of: dict[int, str],
         count: dict[str, int],
         arrays: dict[str, str],
     ) -> tuple[list[str], list[str]]:
         """What a part is given: its names, and how they are declared."""
-        read = {name for item in part.items for name in item.reads.arguments}
         written = {item.result for item in part.items if isinstance(item, Entry)}
         declared = {x.name: self.argument(x) for x in self.program.arguments if x.name in read}
         for call in self.program.calls:
@@ -214,7 +220,7 @@ class _Writer:
         label = ""
         self.zero = False
         for item in part.items:
-            for index in item.reads.steps:
+            for index in item.needs if missing else ():
                 if index in missing:
                     missing.remove(index)
                     lines.append(f"    const {self.type_of(index)} {known[index]} = {of[index]};")
