@@ -99,6 +99,8 @@ def module(name: str, tmp_path: Path) -> Module:
         path = tmp_path / "swing.toml"
         path.write_text(SWINGING)
         return module_for(modelfile.read(str(path)), "swing")
+    if name == "rlc_ladder":
+        return module_for(modelfile.read(str(EXAMPLES / name / f"{name}.toml")), name)
     return module_for(robot(name), name, folded=True)
 
 
@@ -291,7 +293,7 @@ def test_the_header_says_what_cannot_be_had_for_many_states(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("compiler", COMPILERS)
-@pytest.mark.parametrize("name", ["arm", "swing", "rough", "panda"])
+@pytest.mark.parametrize("name", ["arm", "swing", "rough", "panda", "rlc_ladder"])
 def test_compiles_without_a_warning(name: str, compiler: str, tmp_path: Path) -> None:
     if not available(compiler):
         pytest.skip(f"{compiler} is not installed")
