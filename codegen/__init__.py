@@ -9,22 +9,25 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from codegen import c, naming, python
+from codegen.options import DEFAULT, TRIG, Options
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from linegraph.program import Module
 
-_REGISTER: dict[str, Callable[[Module], dict[str, str]]] = {
+_REGISTER: dict[str, Callable[[Module, Options], dict[str, str]]] = {
     "c": c.render,
     "python": python.render,
 }
+
+__all__ = ["LANGUAGES", "TRIG", "Options", "naming", "render"]
 
 LANGUAGES = tuple(_REGISTER)
 """The names of all languages, in the order in which they are declared."""
 
 
-def render(module: Module, language: str) -> dict[str, str]:
+def render(module: Module, language: str, options: Options = DEFAULT) -> dict[str, str]:
     """The files of a module in one of `LANGUAGES`: file name -> text.
 
     Equal modules give equal text, byte for byte. All text is printable ASCII; lines end with a
@@ -35,4 +38,4 @@ def render(module: Module, language: str) -> dict[str, str]:
         ModelError: a constant is not a finite number.
     """
     naming.validate(module)
-    return _REGISTER[language](module)
+    return _REGISTER[language](module, options)

@@ -66,11 +66,11 @@ def validate(module: Module) -> None:
     _accept("model", module.name)
     if module.name.endswith("_"):
         raise _refused("model", module.name, "functions' names would have two underscores in a row")
-    macros = {f"{module.name.upper()}_{end}" for end in (*layout.counts(module), "H")}
+    macros = {f"{module.name.upper()}_{end}" for end in (*layout.counts(module), *reserved.HEADS)}
     for parameter in module.parameters:
         _accept("parameter", parameter.name)
         if parameter.name in macros:
-            raise _refused("parameter", parameter.name, "it is a macro of the emitted header")
+            raise _refused("parameter", parameter.name, "it is a macro of the emitted files")
         if parameter.name in reserved.CLASS:
             raise _refused("parameter", parameter.name, "the emitted Python class uses it")
     _distinct("parameter", (parameter.name for parameter in module.parameters))

@@ -88,23 +88,25 @@ def number(x: Number) -> str:
 
 def print_program(program: Program, notation: Notation) -> Body:
     """All lines of a program in one language."""
-    printer = _Printer(program, notation)
+    printer = Printer(program, notation)
     lines = printer.assignments(program)
     results = [[printer.text(x) for x in result.entries] for result in program.results]
     return Body(lines, results, frozenset(printer.used))
 
 
-class _Printer:
+class Printer:
     """Prints the nodes of one program, in order; `known` holds what stands for a node from then on.
 
     Methods call each other only for nodes without a name, whose depth `INLINE_LIMIT` bounds.
     """
 
     def __init__(self, program: Program, notation: Notation) -> None:
+        """Nothing is known before the first line."""
         self.notation = notation
         self.turned = program.turned
         self.guarded = program.guarded if notation.divided else frozenset[int]()
         self.known: dict[int, str] = {}
+        self.read: dict[int, str] = {}
         self.used: set[str] = set()
 
     def assignments(self, program: Program) -> list[str]:
@@ -127,6 +129,12 @@ class _Printer:
                 for check in due[count]:
                     lines += self.check(check)
         return lines
+
+    def begin(self) -> set[str]:
+        """Begin a new `used`, which is returned."""
+        self.read = {}
+        self.used = set()
+        return self.used
 
     def check(self, check: Check) -> list[str]:
         """The lines of one check."""
@@ -201,6 +209,9 @@ class _Printer:
 
     def symbol(self, node: Node) -> str:
         """What is read: an element of an array, a parameter, or the time."""
+        found = self.read.get(node.index)
+        if found is not None:
+            return found
         argument, place = str(node.a), node.b
         self.used.add(argument)
         if place is None:
@@ -209,7 +220,7 @@ class _Printer:
             text = f"{argument}[{place}]"
         else:
             text = f"{self.notation.member}{place}"
-        self.known[node.index] = text
+        self.read[node.index] = text
         return text
 
 

@@ -11,6 +11,7 @@ import math
 from typing import TYPE_CHECKING
 
 from codegen import layout, prose, routines, templates
+from codegen.options import DEFAULT
 from codegen.printer import Notation, number, print_program
 from linegraph.functions import ARITY
 from linegraph.program import Program, Routine
@@ -18,13 +19,14 @@ from linegraph.program import Program, Routine
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from codegen.options import Options
     from linegraph.program import Argument, Check, Module, Quantity, Result
 
 _WIDTH = 96
 
 
-def render(module: Module) -> dict[str, str]:
-    """The one file of a module."""
+def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
+    """The one file of a module; no option concerns it."""
     statuses = layout.statuses(module)
     bodies = {program.name: _body(module, program) for program in module.programs}
     alone = any(_sizes(program) for program in module.programs)

@@ -62,13 +62,17 @@ _MODULES = """
 FILES = _words(_HEADERS, _MODULES)
 """Headers of C and modules that NumPy imports: a file of that name would be taken for them."""
 
+HEADS = _words("H HIGH1 HIGH2 HIGH4 LANES LOW1 LOW2 LOW4 PART RESTRICT SWAP")
+"""What macros of the emitted C files are called, after the model's name."""
+
 CLASS = _words("replace self")
 """What the emitted Python class `Parameters` has for its own use."""
 
 _OWN = """
-    all any bool check DEFAULT_PARAMETERS default_parameters enumerate float H isinstance join
-    lead len list main np NQ NU number NV object Parameters parameters Q_NAMES q_names shape
-    split status type U_NAMES u_names V_NAMES v_names
+    all angle angles any bool check common cosines count DEFAULT_PARAMETERS default_parameters
+    enumerate float H isinstance join kept lead len list main n np NQ NU number NV object other
+    Parameters parameters Q_NAMES q_names shape sines split status type U_NAMES u_names V_NAMES
+    v_names zero
 """
 _MATH = """
     acos asin atan atan2 ceil cos cosh erf erfc exp fabs floor fmod frexp gamma hypot j0 j1 jn

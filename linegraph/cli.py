@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -126,6 +126,20 @@ def main() -> None:
     multiple=True,
     help="Language to write; repeatable.  [default: all]",
 )
+@click.option(
+    "--trig",
+    type=click.Choice(["libm", "inline"]),
+    default="libm",
+    show_default=True,
+    help="Sines and cosines in C: of <math.h>, or of the file itself, within 2 units in the last place and "
+    "for all joints at once.",
+)
+@click.option(
+    "--batch",
+    is_flag=True,
+    help="Write functions of many states in C, too: equations_batch(n, q, v, M, h) and the like, with "
+    "several states side by side in vector registers.",
+)
 def emit(
     model: str,
     base: str,
@@ -133,9 +147,8 @@ def emit(
     parameters: str | None,
     snap: float,
     out: str,
-    name: str | None,
-    functions: tuple[str, ...],
     languages: tuple[str, ...],
+    **choices: Any,
 ) -> None:
     """Write the equations of motion of MODEL as source files.
 
@@ -168,11 +181,10 @@ def emit(
             written = write(
                 system,
                 out,
-                name=name,
                 languages=languages or None,
                 folded=parameters == "folded",
-                functions=functions,
                 progress=tell,
+                **choices,
             )
         for path in written:
             click.echo(str(path))

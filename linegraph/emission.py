@@ -35,6 +35,8 @@ def emit(
     languages: Iterable[str] | None = None,
     folded: bool = False,
     functions: Iterable[str] = (),
+    trig: str = "libm",
+    batch: bool = False,
     progress: Callable[[str], None] | None = None,
 ) -> list[Path]:
     """Derive a model and write its functions as source files.
@@ -46,6 +48,8 @@ def emit(
         languages: some of `codegen.LANGUAGES`; default all.
         folded: write the parameters' values into the code instead of keeping them symbolic.
         functions: further functions to write, of `programs.ON_REQUEST`.
+        trig: whose sine and cosine C calls, ``libm`` or ``inline``: those of the file itself.
+        batch: write functions of many states at once in C, too.
         progress: called with a short text before each stage.
 
     Returns:
@@ -69,6 +73,8 @@ def emit(
         languages=languages,
         folded=folded,
         functions=functions,
+        trig=trig,
+        batch=batch,
         progress=progress,
     )
     return write_all(out, files)
@@ -81,6 +87,8 @@ def render(
     languages: Iterable[str] | None = None,
     folded: bool = False,
     functions: Iterable[str] = (),
+    trig: str = "libm",
+    batch: bool = False,
     progress: Callable[[str], None] | None = None,
 ) -> dict[str, str]:
     """What `emit` writes, as {file name: text}."""
@@ -92,13 +100,16 @@ def render(
         if language not in codegen.LANGUAGES:
             known = ", ".join(codegen.LANGUAGES)
             raise ModelError(f'language "{language}"', f"is not known; known: {known}")
+    if trig not in codegen.TRIG:
+        raise ModelError(f'trig "{trig}"', f"is not known; known: {', '.join(codegen.TRIG)}")
+    options = codegen.Options(trig, batch)
     prefix = codegen.naming.identifier(model.name) if name is None else name
     tell("deriving")
     module = module_for(model, prefix, folded=folded, functions=functions)
     files: dict[str, str] = {}
     for language in chosen:
         tell(f"writing {language}")
-        files |= codegen.render(module, language)
+        files |= codegen.render(module, language, options)
     return files
 
 

@@ -14,6 +14,9 @@ from linegraph.expression import NEG, SUB, SYMBOL, Node, Operand
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+PREPARED_SUFFIX = "_prepared"
+"""How the name of a function ends that takes the constants of `prepare` in place of the parameters."""
+
 INLINE_LIMIT = 6
 """An expression used once is written in place while the line stays below this many operations."""
 

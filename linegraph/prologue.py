@@ -17,13 +17,21 @@ from typing import TYPE_CHECKING, TypeVar
 
 from linegraph.constants import Restructured, ends, is_constant, mapped, remade
 from linegraph.expression import DIV, NEG, SYMBOL, Dag, Node, Operand
-from linegraph.program import Argument, Call, Program, Result, Routine, assemble, live_nodes
+from linegraph.program import (
+    PREPARED_SUFFIX,
+    Argument,
+    Call,
+    Program,
+    Result,
+    Routine,
+    assemble,
+    live_nodes,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 PREPARE = "prepare"
-SUFFIX = "_prepared"
 COUNT = "NK"
 """The name of the number of constants."""
 
@@ -75,7 +83,7 @@ def with_prologue(
     result = Result("c", (len(entries),), tuple(entries), "constants")
     about = (
         "Prologue: all that depends on parameters alone. Call it once, and again whenever p changes; the "
-        f"functions whose names end in {SUFFIX} take its constants c in place of p."
+        f"functions whose names end in {PREPARED_SUFFIX} take its constants c in place of p."
     )
     parameters = next(a for a in given[0].arguments if a.name == "p")
     prologue = assemble(PREPARE, about, (parameters,), (result,))
@@ -177,7 +185,11 @@ class _Handing:
 
     def of(self, program: T) -> T:
         """The function, as it is to be emitted."""
-        return replace(program, handed=program.name + SUFFIX) if self._hands(program) else program
+        return (
+            replace(program, handed=program.name + PREPARED_SUFFIX)
+            if self._hands(program)
+            else program
+        )
 
     def _hands(self, program: Program | Routine) -> bool:
         cost = self._cost(program.name)
@@ -225,13 +237,13 @@ def _twin(program: T, size: int) -> T:
     constants = Argument("c", size, f"constants, what {PREPARE} makes of the parameters")
     about = f"{program.name} from the constants of {PREPARE}. {program.about}"
     given = tuple(constants if a.name == "p" else a for a in program.arguments)
-    name = program.name + SUFFIX
+    name = program.name + PREPARED_SUFFIX
     if isinstance(program, Routine):
-        uses = tuple(called + SUFFIX for called in program.uses)
+        uses = tuple(called + PREPARED_SUFFIX for called in program.uses)
         return replace(program, name=name, about=about, arguments=given, uses=uses)
     calls = tuple(
         Call(
-            call.program + SUFFIX,
+            call.program + PREPARED_SUFFIX,
             tuple("c" if a == "p" else a for a in call.arguments),
             call.results,
         )

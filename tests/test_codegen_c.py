@@ -67,8 +67,9 @@ def test_layout_of_the_emitted_files() -> None:
         ("ARM_NV", "2"),
         ("ARM_NU", "2"),
     ]
-    assert "void arm_mass_matrix(const arm_parameters *p, const double q[ARM_NQ], " in header
-    assert "double M[ARM_NV * ARM_NV]);" in header
+    assert "void arm_mass_matrix(const arm_parameters *p,\n" in header
+    assert "const double q[ARM_NQ],\n" in header
+    assert "double M[ARM_RESTRICT ARM_NV * ARM_NV]);" in header
     assert re.findall(r"#include (\S+)", header + source) == ['"arm.h"', "<math.h>"]
     assert "    double I; /* kg m^2: inertia */" in header
     assert "@return 0, or with all outputs untouched 1: the mass matrix is singular" in header

@@ -13,7 +13,11 @@ import sys
 import tempfile
 from pathlib import Path
 
-FUNCTION = re.compile(r"^(?:void|int) (\w+)\([^;{]*\)\n\{\n(.*?)^\}", re.MULTILINE | re.DOTALL)
+FUNCTION = re.compile(
+    # a long function is written in parts, which count as one
+    r"^(?:[A-Z0-9_]+_PART )?(?:void|int) (\w+?)(?:_part\d+)?\([^;{]*\)\n\{\n(.*?)^\}",
+    re.MULTILINE | re.DOTALL,
+)
 COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 EXPONENT = re.compile(r"(?<=[\d.])e[+-](?=\d)")
 WATCHED = {
@@ -27,7 +31,10 @@ WATCHED = {
 
 def operations(source: str) -> dict[str, int]:
     """Operations of each function in the text of a C file."""
-    return {name: _count(body) for name, body in FUNCTION.findall(source)}
+    counts: dict[str, int] = {}
+    for name, body in FUNCTION.findall(source):
+        counts[name] = counts.get(name, 0) + _count(body)
+    return counts
 
 
 def _count(body: str) -> int:

@@ -1,0 +1,346 @@
+"""Straight-line programs in C: lines in the order of `order`, in parts as `parts` cuts them.
+
+The same lines serve two kinds of numbers: doubles, and registers that hold one number of each of
+several states (`codegen.batch`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from codegen import declare
+from codegen.angles import Angles
+from codegen.order import Entry, Guard, Step, arranged, paired
+from codegen.parts import cut, places
+from codegen.printer import Notation, Printer, number
+from linegraph.expression import SYMBOL, Node
+from linegraph.functions import ARITY
+from linegraph.program import live_nodes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from codegen.order import Item
+    from codegen.parts import Part
+    from linegraph.expression import Operand
+    from linegraph.program import Argument, Call, Check, Module, Program
+
+Definition = tuple[str, list[str]]
+"""The head of a function and the lines between its braces."""
+
+RENAMED = {"abs": "fabs", "min": "fmin", "max": "fmax", "sign": "sign_of"}
+FUNCTIONS = {name: f"{RENAMED.get(name, name)}(" for name in ARITY}
+SHARED = ("p", "c", "t")
+"""Arguments that all states of a batch have in common."""
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What the numbers of a function are.
+
+    Attributes:
+        number: their type.
+        wide: whether a number is a register, with one number of each of several states.
+        inline: whether sines and cosines are those of the file itself.
+    """
+
+    number: str = "double"
+    wide: bool = False
+    inline: bool = False
+
+
+def define(
+    module: Module, program: Program, statuses: dict[str, dict[int, str]], kind: Kind
+) -> list[Definition]:
+    """A function, after the parts it calls if it is long."""
+    return _Writer(module, program, statuses, kind).definitions()
+
+
+class _Writer:
+    """Writes one program; `printer` and `count` go through its parts in order."""
+
+    def __init__(
+        self, module: Module, program: Program, statuses: dict[str, dict[int, str]], kind: Kind
+    ) -> None:
+        self.module, self.program, self.statuses, self.kind = module, program, statuses, kind
+        self.prefix, self.macro = module.name, module.name.upper()
+        live = live_nodes(program)
+        self.wide = _wide(program, live) if kind.wide else frozenset()
+        special = kind.wide or kind.inline
+        forced = filter(self.apart, live) if special else paired(live)
+        items = arranged(program, forced)
+        angles = (
+            Angles(items, self.wide if kind.wide else None) if kind.inline else Angles([], None)
+        )
+        self.angles, self.items = angles, angles.without(items)
+        self.printer = Printer(program, _NOTATION)
+        self.count = 0
+        self.zero = False
+        self.read: set[str] = set()
+
+    def apart(self, node: Node) -> bool:
+        """Whether a node needs a line of its own: its function is more than a call that gives a number."""
+        if self.kind.inline and node.op in ("sin", "cos"):
+            return True
+        return self.kind.wide and node.op in ARITY
+
+    def type_of(self, index: int) -> str:
+        """The type of a node with a name."""
+        return self.kind.number if not self.kind.wide or index in self.wide else "double"
+
+    def definitions(self) -> list[Definition]:
+        """All functions, the public one last."""
+        program, kind = self.program, self.kind
+        parts = cut(self.items)
+        made: list[Definition] = []
+        if len(parts) == 1:
+            self.read = self.printer.begin()
+            main = self.lines(parts[0], {})
+        else:
+            main, made = self.split(parts)
+        fails = [bool(self.statuses[call.program]) for call in program.calls]
+        lines = [
+            f"    {kind.number} {local.name}[{local.size or 1}];"
+            for call in program.calls
+            for local in call.results
+        ]
+        guarded = len(parts) > 1 and bool(program.checks)
+        if any(fails) or guarded:
+            lines.append("    int status;")
+        lines += [f"    (void){x.name};" for x in program.arguments if x.name not in self.used()]
+        lines += [f"    (void){x.name};" for x in program.results if not x.entries]
+        for call, may_fail in zip(program.calls, fails, strict=True):
+            lines += _call(self.module, call, may_fail)
+        lines += self.sines() + main
+        if program.status or self.statuses[program.name]:
+            lines.append("    return 0;")
+        return [*made, (self.signature(), lines)]
+
+    def signature(self) -> str:
+        """The head of the function itself."""
+        if not self.kind.wide:
+            return declare.signature(self.module, self.program, self.statuses)
+        parts = [self.argument(x) for x in self.program.arguments]
+        parts += [declare.result(self.module, x, self.kind.number) for x in self.program.results]
+        return declare.head(f"static void {self.prefix}_{self.program.name}_lanes(", parts)
+
+    def argument(self, given: Argument) -> str:
+        """A parameter that is read."""
+        number = "double" if given.name in SHARED else self.kind.number
+        return declare.argument(self.module, given, number)
+
+    def used(self) -> set[str]:
+        """The names of the arguments and local arrays that are read."""
+        given = (call.arguments for call in self.program.calls)
+        return self.read.union(self.angles.reads, *given)
+
+    def sines(self) -> list[str]:
+        """Sines and cosines of all angles that are known from the start, side by side."""
+        angles, number = self.angles, self.kind.number
+        if not angles.size:
+            return []
+        arrays = f"sines[{angles.size}], cosines[{angles.size}]"
+        if not angles.early:
+            return [f"    {number} {arrays};"]
+        texts = [Printer(self.program, _NOTATION).text(angle) for angle in angles.early]
+        texts += ["0.0"] * (angles.filled - len(texts))
+        function = f"{self.prefix}_{'lanes' if self.kind.wide else 'all'}_sincos"
+        return [
+            f"    const {number} angles[{len(texts)}] = {{{', '.join(texts)}}};",
+            f"    {number} {arrays};",
+            f"    {function}({len(angles.early)}, angles, sines, cosines);",
+        ]
+
+    # ---- parts
+
+    def split(self, parts: Sequence[Part]) -> tuple[list[str], list[Definition]]:
+        """The lines that call the parts, and the parts."""
+        found = places(parts, self.type_of)
+        arrays = {
+            number: "kept" if number == self.kind.number else "common" for number in found.count
+        }
+        of = {x: f"{arrays[self.type_of(x)]}[{place}]" for x, place in found.of.items()}
+        lines = [
+            f"    {number} {arrays[number]}[{count}];" for number, count in found.count.items()
+        ]
+        made: list[Definition] = []
+        for place, part in enumerate(parts, 1):
+            read = self.printer.begin()
+            body = self.lines(part, of)
+            self.read |= read
+            names, declared = self.parameters(part, read, of, found.count, arrays)
+            fails = any(isinstance(item, Guard) for item in part.items)
+            name = f"{self.prefix}_{self.program.name}{'_lanes' * self.kind.wide}_part{place}"
+            start = f"{self.macro}_PART {'int' if fails else 'void'} {name}("
+            made.append((declare.head(start, declared), [*body, *["    return 0;"] * fails]))
+            lines += _called(f"{name}({', '.join(names)});", fails)
+        return lines, made
+
+    def parameters(
+        self,
+        part: Part,
+        read: set[str],
+        of: dict[int, str],
+        count: dict[str, int],
+        arrays: dict[str, str],
+    ) -> tuple[list[str], list[str]]:
+        """What a part is given: its names, and how they are declared."""
+        written = {item.result for item in part.items if isinstance(item, Entry)}
+        declared = {x.name: self.argument(x) for x in self.program.arguments if x.name in read}
+        for call in self.program.calls:
+            for x in call.results:
+                if x.name in read:
+                    declared[x.name] = f"const {self.kind.number} {x.name}[{x.size or 1}]"
+        for type_, size in count.items():
+            name = arrays[type_]
+            own = {x for x in part.kept if of[x].startswith(f"{name}[")}
+            if own:
+                declared[name] = f"{type_} {name}[{self.macro}_RESTRICT {size}]"
+            elif any(of[x].startswith(f"{name}[") for x in part.given):
+                declared[name] = f"const {type_} {name}[{size}]"
+        waves = [x.node for x in part.items if isinstance(x, Step) if self.angles.has(x.node)]
+        late = any(map(self.angles.comes_first, waves))
+        for name, op in (("sines", "sin"), ("cosines", "cos")):
+            if late or any(node.op == op for node in waves):
+                constant = "" if late else "const "
+                declared[name] = f"{constant}{self.kind.number} {name}[{self.angles.size}]"
+        for result in self.program.results:
+            if result.name in written:
+                declared[result.name] = declare.result(self.module, result, self.kind.number)
+        return list(declared), list(declared.values())
+
+    # ---- lines
+
+    def lines(self, part: Part, of: dict[int, str]) -> list[str]:
+        """The lines of a part: what earlier parts have kept is read right before it is needed."""
+        known = self.printer.known
+        missing = set(part.given)
+        lines: list[str] = []
+        label = ""
+        self.zero = False
+        for item in part.items:
+            for index in item.needs if missing else ():
+                if index in missing:
+                    missing.remove(index)
+                    lines.append(f"    const {self.type_of(index)} {known[index]} = {of[index]};")
+            if isinstance(item, Step):
+                if item.node.label != label:
+                    label = item.node.label
+                    if label:
+                        lines.append(_NOTATION.comment(label))
+                name = f"t{self.count}"
+                self.count += 1
+                lines += self.assignment(item.node, name)
+                known[item.node.index] = name
+                if item.node.index in part.kept:
+                    lines.append(f"    {of[item.node.index]} = {name};")
+            else:
+                lines += self.ending(item)
+        return [f"    const {self.kind.number} zero = {{0.0}};"] * self.zero + lines
+
+    def ending(self, item: Item) -> list[str]:
+        """An entry of a result, or a check."""
+        printer = self.printer
+        if isinstance(item, Guard):
+            return printer.check(item.check)
+        assert isinstance(item, Entry)
+        text = printer.text(item.value)
+        if self.kind.wide and not (isinstance(item.value, Node) and item.value.index in self.wide):
+            text = self.equal(text)
+        return [f"    {item.result}[{item.place}] = {text};"]
+
+    def assignment(self, node: Node, name: str) -> list[str]:
+        """The lines that give a node its name."""
+        number = self.type_of(node.index)
+        if self.angles.has(node):
+            place = self.angles.place(node)
+            array = "sines" if node.op == "sin" else "cosines"
+            late = self.late(node, place) if self.angles.comes_first(node) else []
+            return [*late, f"    const {number} {name} = {array}[{place}];"]
+        if self.kind.wide and node.op in ARITY and node.index in self.wide:
+            return self.lanewise(node, name)
+        return [f"    const {number} {name} = {self.printer.expression(node)[0]};"]
+
+    def late(self, node: Node, place: int) -> list[str]:
+        """Sine and cosine of an angle that is known only here."""
+        angle = self.printer.text(node.a)
+        at = f"&sines[{place}], &cosines[{place}]"
+        if not self.kind.wide:
+            return [f"    {self.prefix}_sincos({angle}, {at});"]
+        return [
+            "    {",
+            f"        const {self.kind.number} angle = {angle};",
+            f"        {self.prefix}_lanes_sincos(1, &angle, {at});",
+            "    }",
+        ]
+
+    def lanewise(self, node: Node, name: str) -> list[str]:
+        """A function of each number in a register."""
+        function = f"{self.prefix}_lanes_{node.op}"
+        lines = [f"    {self.kind.number} {name} = {self.spread(node.a)};"]
+        if ARITY[node.op] == 1:
+            return [*lines, f"    {function}(&{name});"]
+        return [
+            *lines,
+            "    {",
+            f"        const {self.kind.number} other = {self.spread(node.b)};",
+            f"        {function}(&{name}, &other);",
+            "    }",
+        ]
+
+    def spread(self, x: Operand) -> str:
+        """An operand as a register."""
+        if isinstance(x, Node):
+            text = self.printer.text(x)
+            return text if x.index in self.wide else self.equal(text)
+        return self.equal(number(x))
+
+    def equal(self, text: str) -> str:
+        """A number as a register that has it in all lanes."""
+        self.zero = True
+        return f"{text} + zero"
+
+
+def _wide(program: Program, live: Iterable[Node]) -> frozenset[int]:
+    """The nodes that differ from state to state."""
+    found: set[int] = set()
+    for node in live:
+        if node.op == SYMBOL:
+            wide = node.a not in SHARED
+        else:
+            wide = any(isinstance(x, Node) and x.index in found for x in (node.a, node.b))
+        if wide:
+            found.add(node.index)
+    return frozenset(found)
+
+
+def _call(module: Module, call: Call, may_fail: bool) -> list[str]:
+    names = ", ".join((*call.arguments, *(local.name for local in call.results)))
+    return _called(f"{module.name}_{call.program}({names});", may_fail)
+
+
+def _called(call: str, may_fail: bool) -> list[str]:
+    """A call whose status, if it has one, ends the caller."""
+    if not may_fail:
+        return [f"    {call}"]
+    return [f"    status = {call}", "    if (status != 0) {", "        return status;", "    }"]
+
+
+def _check(value: str, bound: str, check: Check) -> list[str]:
+    """Written so that NaN fails, too."""
+    return [
+        f"    if (!({value} > {bound})) {{ /* {declare.comment(check.about)} */",
+        f"        return {check.status};",
+        "    }",
+    ]
+
+
+_NOTATION = Notation(
+    before="    const double ",
+    after=";",
+    member="p->",
+    functions=FUNCTIONS,
+    comment=lambda label: f"    /* {declare.comment(label)} */",
+    check=_check,
+)
