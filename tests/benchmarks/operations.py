@@ -16,6 +16,7 @@ from pathlib import Path
 FUNCTION = re.compile(r"^(?:void|int) (\w+)\([^;{]*\)\n\{\n(.*?)^\}", re.MULTILINE | re.DOTALL)
 COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 EXPONENT = re.compile(r"(?<=[\d.])e[+-](?=\d)")
+SIGN = re.compile(r"((?:[=(,+\-*/]|\breturn)\s*)-")
 WATCHED = {
     # robot: file, base, locked joints
     "panda": ("panda_description/urdf/panda.urdf", "fixed", ("panda_finger_joint1",)),
@@ -25,14 +26,16 @@ WATCHED = {
 }
 
 
-def operations(source: str) -> dict[str, int]:
-    """Operations of each function in the text of a C file."""
-    return {name: _count(body) for name, body in FUNCTION.findall(source)}
+def operations(source: str, *, signs: bool = True) -> dict[str, int]:
+    """Operations of each function in the text of a C file, with or without those that change a sign."""
+    return {name: _count(body, signs=signs) for name, body in FUNCTION.findall(source)}
 
 
-def _count(body: str) -> int:
+def _count(body: str, *, signs: bool) -> int:
     text = EXPONENT.sub("e", COMMENT.sub("", body))
     text = re.sub(r"\[[^\]]*\]|->", "", text)
+    if not signs:
+        text = SIGN.sub(r"\1", text)
     return sum(map(text.count, "+-*/")) + len(re.findall(r"\b(?:sin|cos|sqrt)\(", text))
 
 
