@@ -12,14 +12,14 @@ import shutil
 import statistics
 import subprocess
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 from environment import BUILD, OPTIMISED, VALGRIND, harness, run
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -87,7 +87,7 @@ class Call:
         peer: what its row is called.
         function: one of `FUNCTIONS`.
         library: compiled as the user would.
-        counted: the same without what valgrind does not know.
+        counted: compiles the same without what valgrind does not know.
         options: what its setup takes.
         layout: the peer's order of coordinates.
         figures: what is known of it: operations, bytes of C, seconds of compiling, ...
@@ -97,7 +97,7 @@ class Call:
     peer: str
     function: str
     library: Path
-    counted: Path
+    counted: Callable[[], Path]
     layout: Layout
     options: str = "-"
     figures: dict[str, float] = field(default_factory=dict)
@@ -147,15 +147,18 @@ class Sizes:
         return found
 
 
-def compiled(name: str, sources: Sequence[Path], include: Path) -> tuple[Path, Path]:
-    """A shared library, and the same for valgrind."""
-    found = []
-    for suffix, extra in (("", ()), ("-counted", VALGRIND)):
+def compiled(
+    name: str, sources: Sequence[Path], include: Path
+) -> tuple[Path, Callable[[], Path]]:
+    """A shared library, and how to make the same for valgrind."""
+
+    def made(suffix: str, *extra: str) -> Path:
         path = include / f"{name}{suffix}.so"
         command = [*OPTIMISED, *extra, "-w", "-fPIC", "-shared", "-Wl,-Bsymbolic", f"-I{include}"]
         run([*command, *map(str, sources), "-lm", "-o", str(path)])
-        found.append(path)
-    return found[0], found[1]
+        return path
+
+    return made(""), partial(made, "-counted", *VALGRIND)
 
 
 def compile_seconds(source: Path, runs: int) -> float:
@@ -216,13 +219,14 @@ def count_instructions(calls: Sequence[Call], sizes: Sizes) -> None:
         return
     for call in calls:
         many = max(2 * STATES // call.states, 2)
-        counts = [_executed(call, sizes, number) for number in (many, 2 * many)]
+        library = call.counted()
+        counts = [_executed(call, library, sizes, number) for number in (many, 2 * many)]
         call.figures["instructions"] = (counts[1] - counts[0]) / (many * call.states)
 
 
-def _executed(call: Call, sizes: Sizes, number: int) -> int:
+def _executed(call: Call, library: Path, sizes: Sizes, number: int) -> int:
     tool = ["valgrind", "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null"]
-    words = _words(call, sizes, call.counted)
+    words = _words(call, sizes, library)
     command = [*tool, str(harness()), "count", str(number), *words]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     found = re.search(r"I\s+refs:\s+([\d,]+)", done.stderr)

@@ -97,12 +97,8 @@ def casadi_generator() -> Path:
 
 
 def pinocchio_library(extra: tuple[str, ...] = ()) -> Path:
-    """Pinocchio's algorithms over doubles.
-
-    Eigen's alignment is that of the wheel's library, which reads the robot.
-    """
-    command = [*_cxx(), "-O3", "-march=native", *extra]
-    command += ["-DEIGEN_MAX_ALIGN_BYTES=16", "-fPIC", "-shared"]
+    """Pinocchio's algorithms over doubles, all of them from its headers."""
+    command = [*_cxx(), "-O3", "-march=native", *extra, "-fPIC", "-shared"]
     return built(f"pinocchio{''.join(extra)}.so", command, [HERE / "pinocchio_calls.cpp"])
 
 
@@ -137,7 +133,8 @@ def _cxx() -> list[str]:
 def _libraries(target: str) -> list[str]:
     site = site_packages()
     cmeel = site / "cmeel.prefix" / "lib"
-    pinocchio = [f"-L{cmeel}", f"-Wl,-rpath,{cmeel}", "-lpinocchio_parsers", "-lpinocchio_default"]
+    here = [f"-L{cmeel}", f"-Wl,-rpath,{cmeel}"]
+    parsers = ["-lpinocchio_parsers", "-lpinocchio_default"]
     if target == "harness":
         return ["-ldl"]
     if target == "mujoco.so":
@@ -145,8 +142,8 @@ def _libraries(target: str) -> list[str]:
         return [str(library), f"-Wl,-rpath,{library.parent}"]
     if target == "casadi_generator":
         library = next((site / "casadi").glob("libcasadi.so.*"))
-        return [str(library), f"-Wl,-rpath,{library.parent}", *pinocchio]
-    return pinocchio
+        return [str(library), f"-Wl,-rpath,{library.parent}", *here, *parsers]
+    return [*here, "-lboost_serialization"]
 
 
 def described() -> dict[str, str]:

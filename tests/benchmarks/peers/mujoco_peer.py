@@ -71,7 +71,7 @@ def calls(robot: Robot, joints: tuple[str, ...], function: str) -> list[Call]:
     options = f"{function} {robot.base} {_urdf(robot)}"
     theirs = [name for name in names(library, options) if name != "root"]
     layout = WorldLayout.of(joints, theirs, 6 if robot.floating else 0)
-    return [Call("MuJoCo", function, library, library, layout, options)]
+    return [Call("MuJoCo", function, library, mujoco_library, layout, options)]
 
 
 def _urdf(robot: Robot) -> Path:

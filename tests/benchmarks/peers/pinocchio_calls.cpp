@@ -1,12 +1,14 @@
 // Pinocchio's own algorithms over doubles, as a library for the harness.
 //
-// setup takes "FUNCTION fixed|floating CONVENTION ROBOT.urdf", FUNCTION one of equations, inverse_dynamics,
-// forward_dynamics and CONVENTION one of local, world: where crba and aba express their frames.
+// setup takes "FUNCTION CONVENTION MODEL.bin", FUNCTION one of equations, inverse_dynamics,
+// forward_dynamics and CONVENTION one of local, world: where crba and aba express their frames. The model
+// was saved by Pinocchio's Python: its library was built for an older processor, and its vectors lie in
+// memory otherwise than those of what is compiled here for this one.
 
 #include <pinocchio/algorithm/aba.hpp>
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
-#include <pinocchio/parsers/urdf.hpp>
+#include <pinocchio/serialization.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -27,14 +29,10 @@ struct Robot {
 
 extern "C" void *setup(const char *options)
 {
-    std::string function, base, convention, urdf;
-    std::istringstream(options) >> function >> base >> convention >> urdf;
+    std::string function, convention, file;
+    std::istringstream(options) >> function >> convention >> file;
     auto *robot = new Robot;
-    if (base == "floating") {
-        pinocchio::urdf::buildModel(urdf, pinocchio::JointModelFreeFlyer(), "root", robot->model);
-    } else {
-        pinocchio::urdf::buildModel(urdf, robot->model);
-    }
+    robot->model.loadFromBinary(file);
     robot->data = std::make_unique<pinocchio::Data>(robot->model);
     robot->tau = Eigen::VectorXd::Zero(robot->model.nv);
     robot->function = function == "equations"      ? Function::equations

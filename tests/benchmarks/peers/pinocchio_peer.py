@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import ctypes
+from functools import cache, partial
 from typing import TYPE_CHECKING
 
-from calls import Call, Layout
+from calls import Call, Layout, folder
 from environment import VALGRIND, pinocchio_library
 
 if TYPE_CHECKING:
@@ -16,17 +17,28 @@ if TYPE_CHECKING:
 
 def calls(robot: Robot, joints: tuple[str, ...], function: str) -> list[Call]:
     """In both conventions of crba and aba; rnea has one."""
-    library, counted = pinocchio_library(), pinocchio_library(VALGRIND)
+    library, counted = pinocchio_library(), partial(pinocchio_library, VALGRIND)
     found = []
     for convention in ("local", "world"):
         if convention == "world" and function == "inverse_dynamics":
             continue
         peer = "Pinocchio C++" + ", world" * (convention == "world")
-        options = f"{function} {robot.base} {convention} {robot.urdf}"
+        options = f"{function} {convention} {saved(robot)}"
         theirs = [name for name in names(library, options) if name != "root"]
         layout = Layout.of(joints, theirs, 6 if robot.floating else 0)
         found.append(Call(peer, function, library, counted, layout, options))
     return found
+
+
+@cache
+def saved(robot: Robot) -> Path:
+    """The robot as Pinocchio's Python reads it, in a file."""
+    import pinocchio
+
+    path = folder("pinocchio") / f"{robot.name}.bin"
+    free = (pinocchio.JointModelFreeFlyer(), "root") if robot.floating else ()
+    pinocchio.buildModelFromUrdf(str(robot.urdf), *free).saveToBinary(str(path))
+    return path
 
 
 def names(library: Path, options: str) -> list[str]:
