@@ -36,7 +36,9 @@ PLANAR_LINK = (
 def chain(n: int, folder: Path) -> Path:
     """A URDF of n revolute links one after the other, with rotated frames and turning axes."""
     axes = ("0 0 1", "1 0 0", "0 1 0")
-    links = "".join(LINK.format(i=i, p=i - 1, axis=axes[i % 3], limit=LIMIT) for i in range(1, n + 1))
+    links = "".join(
+        LINK.format(i=i, p=i - 1, axis=axes[i % 3], limit=LIMIT) for i in range(1, n + 1)
+    )
     path = folder / f"chain{n}.urdf"
     path.write_text(CHAIN.format(n=n, links=links))
     return path

@@ -76,9 +76,7 @@ def calls(robot: Robot, joints: tuple[str, ...], function: str, runs: int) -> li
     for peer, variant in (("CasADi", function), ("CasADi, dense M", f"{function}_dense")):
         if variant not in _variants():
             continue
-        name = min(
-            (f"{variant}{mark}" for mark in CONVENTIONS.values()), key=lambda n: made.operations(n)
-        )
+        name = min((f"{variant}{mark}" for mark in CONVENTIONS.values()), key=made.operations)
         source = made.folder / f"{name}.c"
         glue = made.folder / f"{name}_call.c"
         glue.write_text(f'#define NAME {name}\n#include "{HERE / "casadi_calls.c"}"\n')

@@ -6,7 +6,6 @@ import re
 import sys
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from calls import FUNCTIONS, Call, Layout, Sizes, compile_seconds, compiled, folder, spent
@@ -14,6 +13,8 @@ from environment import run
 from operations import FUNCTION, operations
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from robots import Robot
 
 BATCH = 1024
@@ -30,7 +31,9 @@ void call(void *self, const double *x, double *y)
     {body}
 }}
 """
-ALONE = "for (int k = 0; k < {n}; ++k) {name}_equations(x + k * {nq}, v + k * {nv}, M + k * {nv} * {nv}, h + k * {nv});"
+ALONE = """for (int k = 0; k < {n}; ++k) {{
+        {name}_equations(x + k * {nq}, v + k * {nv}, M + k * {nv} * {nv}, h + k * {nv});
+    }}"""
 TOGETHER = "{name}_equations_batch({n}, x, v, M, h);"
 POINTERS = "const double *v = x + {n} * {nq}; double *M = y, *h = y + {n} * {nv} * {nv};"
 # CPU time after the interpreter has started, importing linegraph included
@@ -101,7 +104,6 @@ def calls(robot: Robot, emitted: Emitted, function: str, runs: int) -> list[Call
     """The function as emitted, and with `--trig inline` where that can be asked for."""
     found = [_call("linegraph", emitted, function)]
     alone = emitted.folder / f"only_{function}.c"
-    alone.write_text(only(emitted, function))
     found[0].figures |= {
         "operations": counted(emitted, function),
         "bytes": alone.stat().st_size,
@@ -121,9 +123,13 @@ def batches(robot: Robot) -> list[Call]:
     emitted = emit(robot, "batch", "--batch", *extra)
     sizes = {"n": BATCH, "nq": emitted.sizes.nq, "nv": emitted.sizes.nv, "name": emitted.name}
     found = []
-    for peer, body in ((f"{BATCH} states one by one", ALONE), ("in a batch", TOGETHER)):
+    for peer, function, body in (
+        (f"{BATCH} states one by one", "equations", ALONE),
+        ("in a batch", "equations_batch", TOGETHER),
+    ):
         text = (POINTERS + body).format(**sizes)
-        call = _call(f"linegraph, {peer}", emitted, "equations", text)
+        call = _call(f"linegraph, {peer}", emitted, function, text)
+        call.function = "equations"
         call.states = BATCH
         found.append(call)
     return found
@@ -131,18 +137,19 @@ def batches(robot: Robot) -> list[Call]:
 
 def _call(peer: str, emitted: Emitted, function: str, body: str = "") -> Call:
     sizes = {"nq": emitted.sizes.nq, "nv": emitted.sizes.nv}
-    arguments = ARGUMENTS[function].format(**sizes)
+    body = body or f"{emitted.name}_{function}({ARGUMENTS[function].format(**sizes)});"
     slug = re.sub(r"\W+", "_", peer)
     glue = emitted.folder / f"{slug}_{function}_call.c"
     name = emitted.name
-    glue.write_text(GLUE.format(name=name, body=body or f"{name}_{function}({arguments});"))
-    sources = [glue, emitted.folder / f"{name}.c"]
-    library, for_valgrind = compiled(f"{slug}_{function}", sources, emitted.folder)
+    glue.write_text(GLUE.format(name=name, body=body))
+    source = emitted.folder / f"only_{function}.c"
+    source.write_text(only(emitted, function))
+    library, for_valgrind = compiled(f"{slug}_{function}", [glue, source], emitted.folder)
     return Call(peer, function, library, for_valgrind, emitted.layout)
 
 
 def _bodies(emitted: Emitted) -> dict[str, str]:
-    return {name: body for name, body in FUNCTION.findall(emitted.source)}
+    return dict(FUNCTION.findall(emitted.source))
 
 
 def _needed(emitted: Emitted, function: str) -> list[str]:

@@ -36,7 +36,7 @@ class WorldLayout(Layout):
         return x
 
     def restored(self, function: str, y: Array, q: Array, v: Array) -> Array:
-        """linegraph's output; with T v the velocities of MuJoCo, M is TᵀMT and h is Tᵀ(h + M Ṫ v)."""
+        """The output of linegraph; with T v the velocities of MuJoCo, M is TᵀMT and h is Tᵀ(h + M Ṫ v)."""
         y = super().restored(function, y, q, v)
         if not self.free:
             return y

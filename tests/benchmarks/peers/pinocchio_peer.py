@@ -48,5 +48,3 @@ def names(library: Path, options: str) -> list[str]:
     text = ctypes.create_string_buffer(100_000)
     loaded.names(ctypes.c_void_p(loaded.setup(options.encode())), text)
     return text.value.decode().split()
-
-

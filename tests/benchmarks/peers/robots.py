@@ -27,7 +27,7 @@ ROBOTS = {
     "anymal": ("anymal_b_simple_description/robots/anymal.urdf", "floating", ()),
     "talos": ("talos_data/robots/talos_reduced.urdf", "floating", ()),
 }
-CHAINS = ("chain5", "chain10", "chain20", "chain40", "chain100", "planar5", "planar20")
+CHAINS = ("chain5", "chain10", "chain20", "chain40", "planar5", "planar20")
 KNOWN = re.compile(r"(chain|planar)(\d+)")
 NOT_DYNAMICS = ("visual", "collision", "gazebo", "transmission", "material", "sensor")
 

@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
 import linegraph_peer
-from calls import Call, Sizes, count_instructions, folder, time_calls, verify
+from calls import Call, Sizes, count_instructions, folder, time_calls, verify, verify_batches
 from environment import described, say
 from linegraph_peer import Emitted
 from robots import Robot, robot
@@ -95,6 +95,7 @@ def _peers(plan: Plan, system: Robot, emitted: Emitted, function: str) -> list[C
 def _measured(plan: Plan, calls: list[Call], sizes: Sizes) -> dict[str, Figures]:
     """Figures by peer; nothing is timed before all agree."""
     differences = verify(calls, sizes)
+    verify_batches(calls, sizes)
     time_calls(calls, sizes, plan.rounds, plan.milliseconds)
     if "instructions" not in plan.skip:
         count_instructions(calls, sizes)

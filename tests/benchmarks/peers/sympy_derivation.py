@@ -64,8 +64,8 @@ class Chain:
             tip.v2pt_theory(point, self.ground, new)
             inertia = (mechanics.inertia(new, 0, moment, 0), middle)
             body = mechanics.RigidBody(f"B{k}", middle, new, mass, inertia)
-            body.potential_energy = mass * self.g * middle.pos_from(self._origin(point, k)).dot(
-                self.ground.z
+            body.potential_energy = (
+                mass * self.g * middle.pos_from(self._origin(point, k)).dot(self.ground.z)
             )
             self.bodies.append(body)
             frame, point = new, tip
@@ -80,9 +80,7 @@ def kane(n: int) -> tuple[Chain, sympy.Matrix, sympy.Matrix]:
     """M and h by Kane's method."""
     chain = Chain(n, speeds=True)
     method = mechanics.KanesMethod(chain.ground, chain.q, chain.v, chain.kinematic)
-    loads = [
-        (body.masscenter, -body.mass * chain.g * chain.ground.z) for body in chain.bodies
-    ]
+    loads = [(body.masscenter, -body.mass * chain.g * chain.ground.z) for body in chain.bodies]
     method.kanes_equations(chain.bodies, loads)
     return chain, method.mass_matrix, -method.forcing
 
@@ -107,7 +105,7 @@ def written(chain: Chain, M: sympy.Matrix, h: sympy.Matrix) -> tuple[str, int]:
     lines = [f"    const double {name} = {printer.doprint(part)};" for name, part in parts]
     lines += [f"    y[{k}] = {printer.doprint(result)};" for k, result in enumerate(results)]
     counted = sympy.count_ops([*(part for _, part in parts), *results], visual=True)
-    operations = counted.subs({"NEG": 0}).subs({s: 1 for s in counted.free_symbols})
+    operations = counted.subs({"NEG": 0}).subs(dict.fromkeys(counted.free_symbols, 1))
     return TEXT.format(lines="\n".join(lines)), int(operations)
 
 
