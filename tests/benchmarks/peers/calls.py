@@ -182,8 +182,11 @@ def verify(calls: Sequence[Call], sizes: Sizes) -> dict[str, float]:
 
     Each relative to the largest entry of M, or of a vector. What is in no `TOLERANCE` ends the benchmark.
     """
-    first, *others = [call for call in calls if call.states == 1] or calls[:1]
+    single = [call for call in calls if call.states == 1]
     worst: dict[str, float] = {}
+    if not single:
+        return worst
+    first, *others = single
     for q, v, w in sizes.states(first.function, 5):
         size = sizes.outputs(first.function)
         inputs = [call.layout.arranged(call.function, q, v, w) for call in (first, *others)]

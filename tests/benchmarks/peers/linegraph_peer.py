@@ -131,6 +131,7 @@ def batches(robot: Robot) -> list[Call]:
         call = _call(f"linegraph, {peer}", emitted, function, text)
         call.function = "equations"
         call.states = BATCH
+        call.figures["states"] = BATCH
         found.append(call)
     return found
 
