@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from calls import Array
     from robots import Robot
 
+LEAST = 1e-9
+TOLERANCE = 1e-6
+"""MuJoCo takes only inertias that a body can have; those of some files it, or `LEAST`, changes a little."""
+
 
 @dataclass(frozen=True)
 class WorldLayout(Layout):
@@ -71,7 +75,9 @@ def calls(robot: Robot, joints: tuple[str, ...], function: str) -> list[Call]:
     options = f"{function} {robot.base} {_urdf(robot)}"
     theirs = [name for name in names(library, options) if name != "root"]
     layout = WorldLayout.of(joints, theirs, 6 if robot.floating else 0)
-    return [Call("MuJoCo", function, library, mujoco_library, layout, options)]
+    call = Call("MuJoCo", function, library, mujoco_library, layout, options)
+    call.tolerance = TOLERANCE
+    return [call]
 
 
 def _urdf(robot: Robot) -> Path:
@@ -86,6 +92,19 @@ def _urdf(robot: Robot) -> Path:
         joint = ElementTree.SubElement(root, "joint", name="root", type="floating")
         ElementTree.SubElement(joint, "parent", link="the_world")
         ElementTree.SubElement(joint, "child", link=base)
+    for inertia in root.iterfind("link/inertial/inertia"):
+        if np.linalg.eigvalsh(_matrix(inertia)).min() < LEAST:
+            for word in ("ixy", "ixz", "iyz"):
+                inertia.set(word, "0")
+            for word in ("ixx", "iyy", "izz"):
+                inertia.set(word, repr(max(float(inertia.get(word)), LEAST)))
+    settings = ElementTree.SubElement(root, "mujoco")
+    ElementTree.SubElement(settings, "compiler", balanceinertia="true")
     path = folder("mujoco") / f"{robot.name}.urdf"
     path.write_text(ElementTree.tostring(root, encoding="unicode"))
     return path
+
+
+def _matrix(inertia: ElementTree.Element) -> Array:
+    words = (("ixx", "ixy", "ixz"), ("ixy", "iyy", "iyz"), ("ixz", "iyz", "izz"))
+    return np.array([[float(inertia.get(word)) for word in row] for row in words])

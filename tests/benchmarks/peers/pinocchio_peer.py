@@ -46,5 +46,8 @@ def names(library: Path, options: str) -> list[str]:
     loaded = ctypes.CDLL(str(library))
     loaded.setup.restype = ctypes.c_void_p
     text = ctypes.create_string_buffer(100_000)
-    loaded.names(ctypes.c_void_p(loaded.setup(options.encode())), text)
+    model = loaded.setup(options.encode())
+    if not model:
+        raise SystemExit(f"{library.stem} does not read the robot: {options}")
+    loaded.names(ctypes.c_void_p(model), text)
     return text.value.decode().split()
