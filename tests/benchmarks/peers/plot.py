@@ -30,7 +30,7 @@ def draw(found: dict[str, Any], path: Path, function: str = "equations") -> None
         if "CasADi" in figures["functions"].get(function, {})
     }
     peers = [peer for peer in COLOURS if any(peer in rows for rows in robots.values())]
-    figure, axes = pyplot.subplots(figsize=(8, 3.2), layout="constrained")
+    figure, axes = pyplot.subplots(figsize=(10, 3.4), layout="constrained")
     width = 0.84 / max(len(peers), 1)
     for k, peer in enumerate(peers):
         places = [x for x, rows in enumerate(robots.values()) if peer in rows]
@@ -44,8 +44,8 @@ def draw(found: dict[str, Any], path: Path, function: str = "equations") -> None
     axes.set_xticks(range(len(robots)), list(robots))
     axes.set_ylabel("time of a call, CasADi = 1")
     axes.set_title("M and h in one call (above the bars: µs)", fontsize=9)
-    axes.margins(y=0.15)
-    axes.legend(fontsize=7, ncols=len(peers), frameon=False)
+    axes.margins(x=0.01, y=0.12)
+    figure.legend(loc="outside lower center", fontsize=7, ncols=len(peers), frameon=False)
     axes.spines[["top", "right"]].set_visible(False)
     figure.savefig(path, metadata={"Date": None})
     pyplot.close(figure)
