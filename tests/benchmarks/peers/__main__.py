@@ -34,7 +34,7 @@ def options() -> argparse.Namespace:
     parser.add_argument("--skip", **words, default=(), help=", ".join(SKIPPABLE))
     parser.add_argument("--sympy-links", **words, default=("2", "3", "4"), help="default 2,3,4")
     parser.add_argument("--quick", action="store_true", help="few rounds, no instructions")
-    parser.add_argument("--rounds", type=int, help="of timing; default 41")
+    parser.add_argument("--processes", type=int, help="in which each call is timed; default 15")
     parser.add_argument("--output", type=Path, metavar="FILE.json", help="keep all figures")
     parser.add_argument("--input", type=Path, metavar="FILE.json", help="show kept figures again")
     parser.add_argument("--plot", type=Path, metavar="FILE.svg", help="draw times of M and h")
@@ -63,8 +63,9 @@ def main() -> None:
             robots=chosen.robots or (*ROBOTS, *CHAINS),
             functions=chosen.functions or FUNCTIONS,
             skip=frozenset(skip),
-            rounds=chosen.rounds or (7 if chosen.quick else 41),
-            milliseconds=1.0 if chosen.quick else 3.0,
+            processes=chosen.processes or (3 if chosen.quick else 15),
+            rounds=5,
+            milliseconds=1.0,
             runs=1 if chosen.quick else 5,
             links=[int(n) for n in chosen.sympy_links],
         )

@@ -224,13 +224,22 @@ def _difference(got: Array, expected: Array, nv: int) -> float:
     )
 
 
-def time_calls(calls: Sequence[Call], sizes: Sizes, rounds: int, milliseconds: float) -> None:
-    """Add the median nanoseconds per state, and the quartiles, to the figures of each call."""
+def time_calls(
+    calls: Sequence[Call], sizes: Sizes, processes: int, rounds: int, milliseconds: float
+) -> None:
+    """Add the median nanoseconds per state, and the quartiles, to the figures of each call.
+
+    Where code comes to lie decides what fits in a processor's caches, up to a factor of two: so processes
+    are many, each with addresses of its own, and the median is that of all their rounds.
+    """
     words = [word for call in calls for word in _words(call, sizes, call.library)]
-    printed = run([str(harness()), "time", str(rounds), str(milliseconds), *words])
-    for call, line in zip(calls, printed.splitlines(), strict=True):
-        samples = [float(word) / call.states for word in line.split()]
-        low, middle, high = statistics.quantiles(samples, n=4)
+    samples: list[list[float]] = [[] for _ in calls]
+    for _ in range(processes):
+        printed = run([str(harness()), "time", str(rounds), str(milliseconds), *words])
+        for call, found, line in zip(calls, samples, printed.splitlines(), strict=True):
+            found += [float(word) / call.states for word in line.split()]
+    for call, found in zip(calls, samples, strict=True):
+        low, middle, high = statistics.quantiles(found, n=4)
         call.figures |= {"ns": middle, "ns_low": low, "ns_high": high}
 
 

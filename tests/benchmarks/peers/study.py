@@ -27,7 +27,8 @@ class Plan:
         robots: names of the systems.
         functions: some of `calls.FUNCTIONS`.
         skip: peers and measurements to leave out.
-        rounds: how often each function is timed.
+        processes: in how many each function is timed.
+        rounds: how often in each of them.
         milliseconds: how long each time.
         runs: how often a process is measured.
         links: lengths of the planar chains that SymPy derives.
@@ -36,6 +37,7 @@ class Plan:
     robots: Sequence[str]
     functions: Sequence[str]
     skip: frozenset[str]
+    processes: int
     rounds: int
     milliseconds: float
     runs: int
@@ -96,7 +98,7 @@ def _measured(plan: Plan, calls: list[Call], sizes: Sizes) -> dict[str, Figures]
     """Figures by peer; nothing is timed before all agree."""
     differences = verify(calls, sizes)
     verify_batches(calls, sizes)
-    time_calls(calls, sizes, plan.rounds, plan.milliseconds)
+    time_calls(calls, sizes, plan.processes, plan.rounds, plan.milliseconds)
     if "instructions" not in plan.skip:
         count_instructions(calls, sizes)
     for call in calls:

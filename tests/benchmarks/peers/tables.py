@@ -15,6 +15,8 @@ TITLES = {
 COLUMNS = (
     # heading, key, format, scale
     ("ns", "ns", "{:.0f}", 1),
+    ("lower", "ns_low", "{:.0f}", 1),
+    ("upper", "ns_high", "{:.0f}", 1),
     ("ratio", "ratio", "{:.2f}", 1),
     ("million/s", "million", "{:.2f}", 1),
     ("instructions", "instructions", "{:.0f}", 1),
@@ -37,8 +39,8 @@ SHORT = (
     ("MiB", "generation_MiB", "{:.0f}", 1),
 )
 NOTES = """
-ns: median CPU nanoseconds of a call over random states, all peers taken in turn; ratio: CasADi's (or
-the first row's) = 1. instructions: what valgrind sees executed in a call, without AVX-512.
+ns: median CPU nanoseconds of a call over random states, all peers taken in turn, with its quartiles; ratio:
+CasADi's (or the first row's) = 1. instructions: what valgrind sees executed in a call, without AVX-512.
 operations: + - * / sin cos sqrt, signs free; what is not generated has none. C and gcc: the function alone,
 CPU time of {flags}. differs: largest relative difference from linegraph, over random states.
 CasADi: Pinocchio's algorithms over its symbols, in the convention (frames in the axes of the joints
