@@ -88,7 +88,7 @@ def elementwise(module: Module, wide: Sequence[Definition]) -> list[tuple[str, s
 
 
 def _wanted(program: Program | Routine) -> bool:
-    """Whether a function, or the one that reads prepared constants in its place, is called for many states."""
+    """Whether a function, or its twin that reads prepared constants, is called for many states."""
     return program.name.removesuffix(PREPARED_SUFFIX) in NAMES
 
 

@@ -113,6 +113,9 @@ def state(made: Module, program: Program, seed: int = 0, lead: tuple[int, ...] =
             given.append(None)
         elif argument.size is None:
             given.append(0.4)
+        elif argument.name == "c":
+            # constants of a mass matrix are not any numbers
+            given.append(rng.uniform(0.5, 1.5, argument.size))
         else:
             x = rng.uniform(-1.5, 1.5, (*lead, argument.size))
             if argument.name == "q" and argument.size > len(made.velocities):

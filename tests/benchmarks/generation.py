@@ -22,16 +22,33 @@ LINK = (
     '<link name="b{i}"><inertial><origin xyz=".1 .2 .3"/><mass value="1"/>'
     '<inertia ixx=".1" iyy=".2" izz=".25" ixy=".01" ixz=".02" iyz=".03"/></inertial></link>'
     '<joint name="j{i}" type="revolute"><parent link="b{p}"/><child link="b{i}"/>'
-    '<origin xyz="0 0 .5" rpy=".3 .2 .1"/><axis xyz="{axis}"/></joint>'
+    '<origin xyz="0 0 .5" rpy=".3 .2 .1"/><axis xyz="{axis}"/>{limit}</joint>'
+)
+LIMIT = '<limit lower="-3" upper="3" effort="100" velocity="10"/>'  # the format asks for one
+PLANAR_LINK = (
+    '<link name="b{i}"><inertial><origin xyz=".25 0 0"/><mass value="1"/>'
+    '<inertia ixx=".01" iyy=".02" izz=".02" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    '<joint name="j{i}" type="revolute"><parent link="b{p}"/><child link="b{i}"/>'
+    '<origin xyz=".5 0 0"/><axis xyz="0 1 0"/>{limit}</joint>'
 )
 
 
 def chain(n: int, folder: Path) -> Path:
     """A URDF of n revolute links one after the other, with rotated frames and turning axes."""
     axes = ("0 0 1", "1 0 0", "0 1 0")
-    links = "".join(LINK.format(i=i, p=i - 1, axis=axes[i % 3]) for i in range(1, n + 1))
+    links = "".join(
+        LINK.format(i=i, p=i - 1, axis=axes[i % 3], limit=LIMIT) for i in range(1, n + 1)
+    )
     path = folder / f"chain{n}.urdf"
     path.write_text(CHAIN.format(n=n, links=links))
+    return path
+
+
+def planar_chain(n: int, folder: Path) -> Path:
+    """A URDF of n revolute links whose axes are parallel, in a vertical plane."""
+    links = "".join(PLANAR_LINK.format(i=i, p=i - 1, limit=LIMIT) for i in range(1, n + 1))
+    path = folder / f"planar{n}.urdf"
+    path.write_text(CHAIN.format(n=n, links=links).replace('"chain', '"planar'))
     return path
 
 

@@ -20,6 +20,7 @@ FUNCTION = re.compile(
 )
 COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 EXPONENT = re.compile(r"(?<=[\d.])e[+-](?=\d)")
+SIGN = re.compile(r"((?:[=(,+\-*/]|\breturn)\s*)-")
 WATCHED = {
     # robot: file, base, locked joints
     "panda": ("panda_description/urdf/panda.urdf", "fixed", ("panda_finger_joint1",)),
@@ -29,17 +30,19 @@ WATCHED = {
 }
 
 
-def operations(source: str) -> dict[str, int]:
-    """Operations of each function in the text of a C file."""
+def operations(source: str, *, signs: bool = True) -> dict[str, int]:
+    """Operations of each function in the text of a C file, with or without those that change a sign."""
     counts: dict[str, int] = {}
     for name, body in FUNCTION.findall(source):
-        counts[name] = counts.get(name, 0) + _count(body)
+        counts[name] = counts.get(name, 0) + _count(body, signs=signs)
     return counts
 
 
-def _count(body: str) -> int:
+def _count(body: str, *, signs: bool) -> int:
     text = EXPONENT.sub("e", COMMENT.sub("", body))
     text = re.sub(r"\[[^\]]*\]|->", "", text)
+    if not signs:
+        text = SIGN.sub(r"\1", text)
     return sum(map(text.count, "+-*/")) + len(re.findall(r"\b(?:sin|cos|sqrt)\(", text))
 
 
