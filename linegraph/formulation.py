@@ -30,17 +30,16 @@ from linegraph.elements import Element
 from linegraph.errors import ModelError
 from linegraph.graph import Projection
 from linegraph.joints import Compound
-from linegraph.network import network_of
-from linegraph.network.edges import edges_of
 from linegraph.planarity import Angle, absolute_angles
 from linegraph.topology import Topology, choose_forest
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from linegraph.graph import Edge, SystemGraph
     from linegraph.model import Model
     from linegraph.network import Network
+    from linegraph.network.edges import Branch
 
 INERTIA_WEIGHT = 7.0
 NOTHING_ACTS = 0.3
@@ -80,7 +79,7 @@ def formulate(model: Model, graph: SystemGraph) -> Formulation:
         problem = "has no bodies and no components: there is nothing to derive"
         raise ModelError(f'model "{model.name}"', problem)
     _require_known(model)
-    network = network_of(model)
+    network = _network_of(model)
     absolute = _absolute(model)
     projection = _mechanics(graph, TRANSLATION.name)
     # rigid arms hold bodies together: they are branches before all else
@@ -151,7 +150,7 @@ def _coupled(model: Model) -> list[str]:
 def _wanted(model: Model, absolute: tuple[str, ...]) -> list[str]:
     """Edges that must be branches: as the user says, and those that cannot be chords."""
     inertia = (f"{name}/inertia" for name in absolute)
-    components = {branch.name for branch in edges_of(model.components)}
+    components = {branch.name for branch in _network_edges(model)}
     chosen = (name for name in model.choices.tree if name not in components)
     wanted = [*inertia, *chosen, *_coupled(model)]
     return list(dict.fromkeys(wanted))
@@ -220,7 +219,7 @@ def _rotation(
 def _require_known(model: Model) -> None:
     """Refuse a wish for edges, bodies or kinds that do not exist."""
     edges = [joint.name for joint in model.joints] + [f"{name}/inertia" for name in model.bodies]
-    edges += [branch.name for branch in edges_of(model.components) if not branch.port.spatial]
+    edges += [branch.name for branch in _network_edges(model) if not branch.port.spatial]
     for name in model.choices.tree:
         if name not in edges:
             raise ModelError(
@@ -254,3 +253,21 @@ def _require_followers(model: Model, branches: frozenset[str]) -> None:
                     "is coupled to another and must be a branch; cut another joint of the loop"
                 )
                 raise ModelError(f'joint "{part}"', problem)
+
+
+def _network_of(model: Model) -> Network | None:
+    """The network of a model; what derives it is imported where there is one."""
+    if not model.components:
+        return None
+    from linegraph.network import network_of
+
+    return network_of(model)
+
+
+def _network_edges(model: Model) -> Sequence[Branch]:
+    """The edges of a model's components."""
+    if not model.components:
+        return ()
+    from linegraph.network.edges import edges_of
+
+    return edges_of(model.components)

@@ -270,14 +270,19 @@ def joined(a: Moments, b: Moments) -> Moments:
     return Moments(a.mass + b.mass, vector.add(a.first, b.first), second)
 
 
-def body_moments(body: Body, resolve: Resolve) -> Moments:
-    """A body's mass distribution about its own frame's origin."""
+def body_moments(body: Body, resolve: Resolve, pose: Placement) -> Moments:
+    """A body's mass distribution about the origin of a frame in which the body stands at `pose`.
+
+    From the mass centre in one step: what a shift adds and the next one takes off would leave its rounding.
+    """
     mass = resolve(body.mass)
     second = second_moments(tuple(resolve(x) for x in body.inertia))
+    rotation = rotation_of(pose.rotation)
     if body.first is not None:
-        return Moments(mass, resolved(body.first, resolve), second)
-    central = Moments(mass, ZERO, second)
-    return carried(central, Rotation(), resolved(body.center or ZERO, resolve))
+        about_origin = Moments(mass, resolved(body.first, resolve), second)
+        return carried(about_origin, rotation, pose.at)
+    center = rotation.out(resolved(body.center or ZERO, resolve))
+    return carried(Moments(mass, ZERO, second), rotation, vector.add(pose.at, center))
 
 
 def mass_center(body: Body, resolve: Resolve) -> Vector:

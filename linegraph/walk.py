@@ -14,7 +14,6 @@ from linegraph.kinematics import (
     Link,
     Seat,
     body_moments,
-    carried,
     compose,
     inverse,
     joined,
@@ -158,8 +157,8 @@ class _Walk:
         if index < 0:
             return
         link = self._links[index]
-        own = body_moments(self._model.bodies[body], self._resolve)
-        moments = joined(link.moments, carried(own, rotation_of(pose.rotation), pose.at))
+        own = body_moments(self._model.bodies[body], self._resolve, pose)
+        moments = joined(link.moments, own)
         name = f"{link.name}, {body}" if link.name else body
         self._links[index] = replace(link, name=name, moments=moments)
 

@@ -367,7 +367,8 @@ def test_programs_over_the_dag_have_the_numbers_of_the_floats(seed: int) -> None
         assert error(both["M"], np.ravel(mass)) < SAME_ROUTE
         assert error(both["h"], numeric.bias(q_, v_)) < EQUATIONS
         assert dag_values.run(module, "mass_matrix", q=q_)["M"] == both["M"]
-        assert dag_values.run(module, "bias", q=q_, v=v_)["h"] == both["h"]
+        alone = dag_values.run(module, "bias", q=q_, v=v_)["h"]
+        assert error(alone, both["h"]) < EQUATIONS  # beside M it may come from composites
         tau = dag_values.run(module, "inverse_dynamics", q=q_, v=v_, a=a_)["tau"]
         assert error(tau, numeric.inverse_dynamics(q_, v_, a_)) < EQUATIONS
         energy = dag_values.run(module, "energy", q=q_, v=v_)["E"]

@@ -1,142 +1,101 @@
-"""The register of components of scalar networks: one file each, one line in `Words`."""
+"""The register of components of scalar networks: one file each, one line in `Words`.
 
+A component's file is imported when it is first used: most models have few of them, and many have none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-from linegraph.components.accumulator import Accumulator
-from linegraph.components.angular_velocity_source import AngularVelocitySource
-from linegraph.components.any_store import AnyStore
 from linegraph.components.base import Component
-from linegraph.components.belt import Belt
 from linegraph.components.builder import Networks
-from linegraph.components.capacitor import Capacitor
-from linegraph.components.conductance import Conductance
-from linegraph.components.conduction import Conduction
-from linegraph.components.convection import Convection
-from linegraph.components.coupled_inductors import CoupledInductors
-from linegraph.components.current_source import CurrentSource
-from linegraph.components.cylinder import Cylinder
-from linegraph.components.dc_motor import DcMotor
-from linegraph.components.diode import Diode
-from linegraph.components.element import AnyElement
-from linegraph.components.flow_source import FlowSource
-from linegraph.components.flux_source import FluxSource
-from linegraph.components.force_source import ForceSource
-from linegraph.components.gear import Gear
-from linegraph.components.gyrator import Gyrator
-from linegraph.components.heat_capacity import HeatCapacity
-from linegraph.components.heat_source import HeatSource
-from linegraph.components.inductor import Inductor
-from linegraph.components.inertance import Inertance
-from linegraph.components.inertia import Inertia
-from linegraph.components.interface import RotationalInterface, TranslationalInterface
-from linegraph.components.lever import Lever
-from linegraph.components.losses import Losses
-from linegraph.components.mass import Mass
-from linegraph.components.mmf_source import MmfSource
-from linegraph.components.moving_coil import MovingCoil
-from linegraph.components.opamp import OpAmp
-from linegraph.components.orifice import Orifice
-from linegraph.components.piezo import Piezo
-from linegraph.components.pipe import Pipe
-from linegraph.components.pressure_source import PressureSource
-from linegraph.components.pump import HydraulicMotor, Pump
-from linegraph.components.rack import Rack
-from linegraph.components.radiation import Radiation
-from linegraph.components.reluctance import Reluctance
-from linegraph.components.resistor import Resistor
-from linegraph.components.rotational_damper import RotationalDamper
-from linegraph.components.rotational_friction import RotationalFriction
-from linegraph.components.rotational_spring import RotationalSpring
-from linegraph.components.screw import Screw
-from linegraph.components.solenoid import ReluctanceMachine, Solenoid
-from linegraph.components.synchronous_machine import SynchronousMachine
-from linegraph.components.tank import Tank
-from linegraph.components.temperature_source import TemperatureSource
-from linegraph.components.torque_source import TorqueSource
-from linegraph.components.transformer import Transformer
-from linegraph.components.translational_damper import TranslationalDamper
-from linegraph.components.translational_friction import TranslationalFriction
-from linegraph.components.translational_spring import TranslationalSpring
-from linegraph.components.valve import Valve
-from linegraph.components.variable_capacitor import VariableCapacitor
-from linegraph.components.velocity_source import VelocitySource
-from linegraph.components.voltage_source import VoltageSource
-from linegraph.components.winding import Winding
 from linegraph.components.words import connects
 
 
 class Words(Networks):
     """What the builder calls them: ``model.resistor("R1", between=("a", "b"), resistance=100.0)``."""
 
-    resistor = connects(Resistor)
-    conductance = connects(Conductance)
-    capacitor = connects(Capacitor)
-    inductor = connects(Inductor)
-    coupled_inductors = connects(CoupledInductors)
-    diode = connects(Diode)
-    opamp = connects(OpAmp)
-    transformer = connects(Transformer)
-    gyrator = connects(Gyrator)
-    voltage_source = connects(VoltageSource)
-    current_source = connects(CurrentSource)
-    mass = connects(Mass)
-    translational_spring = connects(TranslationalSpring)
-    translational_damper = connects(TranslationalDamper)
-    translational_friction = connects(TranslationalFriction)
-    lever = connects(Lever)
-    force_source = connects(ForceSource)
-    velocity_source = connects(VelocitySource)
-    inertia = connects(Inertia)
-    rotational_spring = connects(RotationalSpring)
-    rotational_damper = connects(RotationalDamper)
-    rotational_friction = connects(RotationalFriction)
-    gear = connects(Gear)
-    belt = connects(Belt)
-    rack = connects(Rack)
-    screw = connects(Screw)
-    torque_source = connects(TorqueSource)
-    angular_velocity_source = connects(AngularVelocitySource)
-    tank = connects(Tank)
-    accumulator = connects(Accumulator)
-    inertance = connects(Inertance)
-    pipe = connects(Pipe)
-    orifice = connects(Orifice)
-    valve = connects(Valve)
-    pressure_source = connects(PressureSource)
-    flow_source = connects(FlowSource)
-    heat_capacity = connects(HeatCapacity)
-    conduction = connects(Conduction)
-    convection = connects(Convection)
-    radiation = connects(Radiation)
-    losses = connects(Losses)
-    temperature_source = connects(TemperatureSource)
-    heat_source = connects(HeatSource)
-    reluctance = connects(Reluctance)
-    winding = connects(Winding)
-    mmf_source = connects(MmfSource)
-    flux_source = connects(FluxSource)
-    element = connects(AnyElement)
-    store = connects(AnyStore)
-    dc_motor = connects(DcMotor)
-    moving_coil = connects(MovingCoil)
-    solenoid = connects(Solenoid)
-    reluctance_machine = connects(ReluctanceMachine)
-    variable_capacitor = connects(VariableCapacitor)
-    piezo = connects(Piezo)
-    synchronous_machine = connects(SynchronousMachine)
-    cylinder = connects(Cylinder)
-    pump = connects(Pump)
-    hydraulic_motor = connects(HydraulicMotor)
-    translational_interface = connects(TranslationalInterface)
-    rotational_interface = connects(RotationalInterface)
+    resistor = connects("resistor", "Resistor")
+    conductance = connects("conductance", "Conductance")
+    capacitor = connects("capacitor", "Capacitor")
+    inductor = connects("inductor", "Inductor")
+    coupled_inductors = connects("coupled_inductors", "CoupledInductors")
+    diode = connects("diode", "Diode")
+    opamp = connects("opamp", "OpAmp")
+    transformer = connects("transformer", "Transformer")
+    gyrator = connects("gyrator", "Gyrator")
+    voltage_source = connects("voltage_source", "VoltageSource")
+    current_source = connects("current_source", "CurrentSource")
+    mass = connects("mass", "Mass")
+    translational_spring = connects("translational_spring", "TranslationalSpring")
+    translational_damper = connects("translational_damper", "TranslationalDamper")
+    translational_friction = connects("translational_friction", "TranslationalFriction")
+    lever = connects("lever", "Lever")
+    force_source = connects("force_source", "ForceSource")
+    velocity_source = connects("velocity_source", "VelocitySource")
+    inertia = connects("inertia", "Inertia")
+    rotational_spring = connects("rotational_spring", "RotationalSpring")
+    rotational_damper = connects("rotational_damper", "RotationalDamper")
+    rotational_friction = connects("rotational_friction", "RotationalFriction")
+    gear = connects("gear", "Gear")
+    belt = connects("belt", "Belt")
+    rack = connects("rack", "Rack")
+    screw = connects("screw", "Screw")
+    torque_source = connects("torque_source", "TorqueSource")
+    angular_velocity_source = connects("angular_velocity_source", "AngularVelocitySource")
+    tank = connects("tank", "Tank")
+    accumulator = connects("accumulator", "Accumulator")
+    inertance = connects("inertance", "Inertance")
+    pipe = connects("pipe", "Pipe")
+    orifice = connects("orifice", "Orifice")
+    valve = connects("valve", "Valve")
+    pressure_source = connects("pressure_source", "PressureSource")
+    flow_source = connects("flow_source", "FlowSource")
+    heat_capacity = connects("heat_capacity", "HeatCapacity")
+    conduction = connects("conduction", "Conduction")
+    convection = connects("convection", "Convection")
+    radiation = connects("radiation", "Radiation")
+    losses = connects("losses", "Losses")
+    temperature_source = connects("temperature_source", "TemperatureSource")
+    heat_source = connects("heat_source", "HeatSource")
+    reluctance = connects("reluctance", "Reluctance")
+    winding = connects("winding", "Winding")
+    mmf_source = connects("mmf_source", "MmfSource")
+    flux_source = connects("flux_source", "FluxSource")
+    element = connects("element", "AnyElement")
+    store = connects("any_store", "AnyStore")
+    dc_motor = connects("dc_motor", "DcMotor")
+    moving_coil = connects("moving_coil", "MovingCoil")
+    solenoid = connects("solenoid", "Solenoid")
+    reluctance_machine = connects("solenoid", "ReluctanceMachine")
+    variable_capacitor = connects("variable_capacitor", "VariableCapacitor")
+    piezo = connects("piezo", "Piezo")
+    synchronous_machine = connects("synchronous_machine", "SynchronousMachine")
+    cylinder = connects("cylinder", "Cylinder")
+    pump = connects("pump", "Pump")
+    hydraulic_motor = connects("pump", "HydraulicMotor")
+    translational_interface = connects("interface", "TranslationalInterface")
+    rotational_interface = connects("interface", "RotationalInterface")
 
 
-def _registered() -> dict[str, type[Component]]:
-    words: list[tuple[str, Any]] = list(vars(Words).items())
-    return {word: method.kind for word, method in words if hasattr(method, "kind")}
+class _Register(Mapping[str, type[Component]]):
+    """The types by their names, which are the builder's words."""
+
+    def __getitem__(self, word: str) -> type[Component]:
+        method: Any = vars(Words)[word]
+        if not isinstance(method, connects):
+            raise KeyError(word)
+        return method.kind
+
+    def __iter__(self) -> Iterator[str]:
+        return (word for word, method in vars(Words).items() if isinstance(method, connects))
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
 
 
-COMPONENTS: dict[str, type[Component]] = _registered()
+COMPONENTS = _Register()
 """The types by their names."""
 
 __all__ = ["COMPONENTS", "Component", "Words"]

@@ -27,6 +27,7 @@ WATCHED = {
     "ur5": ("ur_description/urdf/ur5_robot.urdf", "fixed", ()),
     "talos": ("talos_data/robots/talos_reduced.urdf", "floating", ()),
     "solo12": ("solo_description/robots/solo12.urdf", "floating", ()),
+    "anymal": ("anymal_b_simple_description/robots/anymal.urdf", "floating", ()),
 }
 
 
