@@ -15,6 +15,7 @@ from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from linegraph.errors import ModelError
 from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL, Dag, Node, Operand
 from linegraph.program import Program, live_nodes
 
@@ -189,11 +190,17 @@ def remade(dag: Dag, node: Node, of: Callable[[Operand], Operand]) -> Operand:
 
 
 def mapped(program: Program, of: Callable[[Operand], Operand]) -> Program:
-    """A program with other results and checks, not yet put in order."""
+    """A program with other results and checks, not yet put in order; a check that cannot fail is left out.
+
+    Raises:
+        ModelError: a check fails at every state.
+    """
     results = tuple(replace(r, entries=tuple(map(of, r.entries))) for r in program.results)
     checks = []
     for check in program.checks:
-        node = of(check.node)
-        assert isinstance(node, Node)
-        checks.append(replace(check, node=node, bound=of(check.bound)))
+        node, bound = of(check.node), of(check.bound)
+        if isinstance(node, Node):
+            checks.append(replace(check, node=node, bound=bound))
+        elif isinstance(bound, Node) or not node > bound:
+            raise ModelError("", f"{check.about}, whatever the state")
     return replace(program, results=results, checks=tuple(checks))
