@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from linegraph.cli_options import ABOUT_MODEL, EMIT, with_options
 from linegraph.errors import LinegraphError, SourceErrors
 from linegraph.version import __version__
 
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from linegraph.model import Model
 
 WRONG = 2
-LANGUAGES = ("c", "python")
 
 
 @contextmanager
@@ -37,42 +37,7 @@ def _explained() -> Iterator[None]:
         sys.exit(WRONG)
 
 
-def _about_model(command: Callable[..., None]) -> Callable[..., None]:
-    """The argument and options that every command on a model takes."""
-    options = (
-        click.argument("model", type=click.Path(path_type=str)),
-        click.option(
-            "--base",
-            type=click.Choice(["fixed", "floating"]),
-            default="fixed",
-            show_default=True,
-            help="Weld a URDF's root link to the ground, or let it float on a free joint named 'root'.",
-        ),
-        click.option(
-            "--lock",
-            "locks",
-            metavar="JOINT[=VALUE]",
-            multiple=True,
-            help="Weld a joint at a value of its coordinate (rad or m; default 0). Repeatable.",
-        ),
-        click.option(
-            "--parameters",
-            type=click.Choice(["symbolic", "folded"]),
-            help="Keep masses, moments and offsets as named parameters of the emitted functions, or fold "
-            "their values into the code.  [default: symbolic for a model file, folded for a URDF]",
-        ),
-        click.option(
-            "--snap",
-            type=click.FloatRange(0, 0.01),
-            default=1e-11,
-            show_default=True,
-            help="Round rotation entries this close to 0, 1, -1, 1/2 or -1/2 to these values: the dust of "
-            "decimal angles.",
-        ),
-    )
-    for option in reversed(options):
-        command = option(command)
-    return command
+_about_model = with_options(ABOUT_MODEL)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -102,44 +67,7 @@ def main() -> None:
 
 @main.command()
 @_about_model
-@click.option(
-    "--out",
-    metavar="DIR",
-    type=click.Path(file_okay=False, path_type=str),
-    default=".",
-    help="Folder for the files; made if need be.  [default: the current folder]",
-)
-@click.option(
-    "--name", metavar="NAME", help="Prefix of functions and files.  [default: the model's name]"
-)
-@click.option(
-    "--with",
-    "functions",
-    type=click.Choice(["power"]),
-    multiple=True,
-    help="Further functions to write: power, the audit of through times across over all edges.",
-)
-@click.option(
-    "--lang",
-    "languages",
-    type=click.Choice(LANGUAGES),
-    multiple=True,
-    help="Language to write; repeatable.  [default: all]",
-)
-@click.option(
-    "--trig",
-    type=click.Choice(["libm", "inline"]),
-    default="libm",
-    show_default=True,
-    help="Sines and cosines in C: of <math.h>, or of the file itself, within 2 units in the last place and "
-    "for all joints at once.",
-)
-@click.option(
-    "--batch",
-    is_flag=True,
-    help="Write functions of many states in C, too: equations_batch(n, q, v, M, h) and the like, with "
-    "several states side by side in vector registers.",
-)
+@with_options(EMIT)
 def emit(
     model: str,
     base: str,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from linegraph.derive import derive, placed
 from linegraph.errors import ModelError
 from linegraph.files import write_all
-from linegraph.programs import ON_REQUEST, module_of
+from linegraph.programs import ON_REQUEST, PROGRAMS, module_of
 from linegraph.version import __version__
 
 if TYPE_CHECKING:
@@ -35,6 +35,7 @@ def emit(
     languages: Iterable[str] | None = None,
     folded: bool = False,
     functions: Iterable[str] = (),
+    only: Iterable[str] = (),
     trig: str = "libm",
     batch: bool = False,
     progress: Callable[[str], None] | None = None,
@@ -48,6 +49,7 @@ def emit(
         languages: some of `codegen.LANGUAGES`; default all.
         folded: write the parameters' values into the code instead of keeping them symbolic.
         functions: further functions to write, of `programs.ON_REQUEST`.
+        only: write nothing but these of `programs.PROGRAMS` and what they call.
         trig: whose sine and cosine C calls, ``libm`` or ``inline``: those of the file itself.
         batch: write functions of many states at once in C, too.
         progress: called with a short text before each stage.
@@ -73,6 +75,7 @@ def emit(
         languages=languages,
         folded=folded,
         functions=functions,
+        only=only,
         trig=trig,
         batch=batch,
         progress=progress,
@@ -87,6 +90,7 @@ def render(
     languages: Iterable[str] | None = None,
     folded: bool = False,
     functions: Iterable[str] = (),
+    only: Iterable[str] = (),
     trig: str = "libm",
     batch: bool = False,
     progress: Callable[[str], None] | None = None,
@@ -105,7 +109,7 @@ def render(
     options = codegen.Options(trig, batch)
     prefix = codegen.naming.identifier(model.name) if name is None else name
     tell("deriving")
-    module = module_for(model, prefix, folded=folded, functions=functions)
+    module = module_for(model, prefix, folded=folded, functions=functions, only=only)
     files: dict[str, str] = {}
     for language in chosen:
         tell(f"writing {language}")
@@ -114,18 +118,24 @@ def render(
 
 
 def module_for(
-    model: Model, name: str, *, folded: bool = False, functions: Iterable[str] = ()
+    model: Model,
+    name: str,
+    *,
+    folded: bool = False,
+    functions: Iterable[str] = (),
+    only: Iterable[str] = (),
 ) -> Module:
     """The program of every function of a model: what operation counts are taken from."""
     about = [f"Equations of motion of {model.name}, derived by linegraph {__version__}."]
     about += [text for text in (model.about,) if text]
-    wanted = tuple(functions)
-    for function in wanted:
-        if function not in ON_REQUEST:
-            raise ModelError(f'function "{function}"', f"is not one of {', '.join(ON_REQUEST)}")
+    wanted, few = tuple(functions), tuple(only)
+    for known, named in ((ON_REQUEST, wanted), (tuple(PROGRAMS), few)):
+        for function in named:
+            if function not in known:
+                raise ModelError(f'function "{function}"', f"is not one of {', '.join(known)}")
     about = [*about, *CONVENTIONS]
     derivation = derive(model)
     try:
-        return module_of(derivation, name, folded=folded, about=about, wanted=wanted)
+        return module_of(derivation, name, folded=folded, about=about, wanted=wanted, only=few)
     except ModelError as error:
         raise placed(error, model) from None

@@ -41,7 +41,8 @@ def module_of(
     folded: bool,
     about: Iterable[str],
     wanted: Iterable[str] = (),
-    only: Iterable[str] | None = None,
+    only: Iterable[str] = (),
+    prologue: bool = True,
 ) -> Module:
     """All functions of a model.
 
@@ -51,19 +52,27 @@ def module_of(
         folded: whether parameters become numbers.
         about: paragraphs for the head of the file.
         wanted: further functions to emit, of `ON_REQUEST`.
-        only: nothing but these of `PROGRAMS`; default all.
+        only: nothing but these of `PROGRAMS` and what they call; all if there are none.
+        prologue: whether what parameters alone determine is hoisted into a function of its own.
 
     Raises:
-        ModelError: a parameter has no value, or a closed model cannot be assembled.
+        ModelError: a parameter has no value, a closed model cannot be assembled, or it has no function of
+            those asked for.
     """
     parameters = _parameters(derivation)
     functions = Functions(derivation, folded or not parameters)
-    asked = (*only,) if only is not None else (*(set(PROGRAMS) - set(ON_REQUEST)), *wanted)
-    chosen = [key for key in PROGRAMS if key in asked]
-    programs = tuple(program for key in chosen for program in PROGRAMS[key](functions))
+    asked = (*only,) or (*(set(PROGRAMS) - set(ON_REQUEST)), *wanted)
+    made = _made(functions, [key for key in PROGRAMS if key in asked])
+    for key in only:
+        if not made[key]:
+            raise ModelError(
+                f'function "{key}"', "is none of this model: it has nothing of the kind"
+            )
+    chosen = [key for key in PROGRAMS if key in made]
+    programs = tuple(program for key in chosen for program in made[key])
     functions.dag.release()
     constants = 0
-    if "p" in functions.head and only is None:
+    if "p" in functions.head and prologue:
         programs, constants = with_prologue(programs)
     tree = functions.tree
     closed = closed_programs.listings(functions) if tree.closed else ()
@@ -87,6 +96,30 @@ def module_of(
             *([(COUNT, constants)] if constants else []),
         ),
     )
+
+
+def _made(functions: Functions, keys: Iterable[str]) -> dict[str, tuple[Program | Routine, ...]]:
+    """What each of some keys of `PROGRAMS` makes, and those that make what these call."""
+    made = {key: PROGRAMS[key](functions) for key in keys}
+    while True:
+        programs = [program for found in made.values() for program in found]
+        called = {name for program in programs for name in _called(program)}
+        missing = called - {program.name for program in programs}
+        if not missing:
+            return made
+        others = [key for key in PROGRAMS if key not in made]
+        for key in [key for key in others if key in missing] or others:
+            found = PROGRAMS[key](functions)
+            if missing & {program.name for program in found}:
+                made[key] = found
+                break
+
+
+def _called(program: Program | Routine) -> tuple[str, ...]:
+    """The functions that a function calls."""
+    if isinstance(program, Routine):
+        return program.uses
+    return tuple(call.program for call in program.calls)
 
 
 def _mass_matrix(f: Functions) -> Program:

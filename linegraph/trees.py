@@ -116,7 +116,12 @@ def _moving(derivation: Derivation) -> tuple[str, ...]:
 def _judged(derivation: Derivation, choices: dict[str, Any], chosen: bool) -> Candidate:
     """The cost of a tree."""
     module = module_of(
-        derivation, "counted", folded=False, about=(), only=("constraints", "equations")
+        derivation,
+        "counted",
+        folded=False,
+        about=(),
+        only=("constraints", "equations"),
+        prologue=False,
     )
     programs = {p.name: p for p in module.programs if isinstance(p, Program)}
     whole = programs.get("constrained_equations", programs["equations"])

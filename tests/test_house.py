@@ -66,7 +66,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("prologue", "shared"),
     ("programs",),
     ("codegen", "trees"),
-    ("checking", "emission", "report"),
+    ("checking", "cli_options", "emission", "report"),
     ("cli",),
     ("__main__",),
 )
@@ -82,7 +82,7 @@ NO_PHYSICS = {"graph": {"errors"}, "topology": {"errors", "graph"}}
 CODEGEN_SEES = {f"linegraph.{name}" for name in ("errors", "expression", "functions", "program")}
 HEAVY = {"sympy", "networkx", "numpy", "jinja2", "lxml"}
 ONLY_THERE = {
-    "click": {"linegraph.cli"},
+    "click": {"linegraph.cli", "linegraph.cli_options"},
     "jinja2": {"codegen.templates"},
     "lxml": {"linegraph.urdf.document"},
     "codegen": {"linegraph.emission", "linegraph.cli"},

@@ -1,0 +1,130 @@
+"""The options that commands take."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    Command = Callable[..., None]
+    Option = Callable[[Command], Command]
+
+LANGUAGES = ("c", "python")
+
+FUNCTIONS = (
+    "mass_matrix",
+    "bias",
+    "equations",
+    "inverse_dynamics",
+    "constraints",
+    "forward_dynamics",
+    "coordinate_rates",
+    "energy",
+    "rhs",
+    "project",
+    "reduction",
+    "across",
+    "reactions",
+    "drives",
+    "power",
+    "outputs",
+)
+"""What functions `emit` can be asked for."""
+
+
+def with_options(options: tuple[Option, ...]) -> Option:
+    """A decorator that adds options to a command, in this order."""
+
+    def add(command: Command) -> Command:
+        for option in reversed(options):
+            command = option(command)
+        return command
+
+    return add
+
+
+ABOUT_MODEL: tuple[Option, ...] = (
+    click.argument("model", type=click.Path(path_type=str)),
+    click.option(
+        "--base",
+        type=click.Choice(["fixed", "floating"]),
+        default="fixed",
+        show_default=True,
+        help="Weld a URDF's root link to the ground, or let it float on a free joint named 'root'.",
+    ),
+    click.option(
+        "--lock",
+        "locks",
+        metavar="JOINT[=VALUE]",
+        multiple=True,
+        help="Weld a joint at a value of its coordinate (rad or m; default 0). Repeatable.",
+    ),
+    click.option(
+        "--parameters",
+        type=click.Choice(["symbolic", "folded"]),
+        help="Keep masses, moments and offsets as named parameters of the emitted functions, or fold "
+        "their values into the code.  [default: symbolic for a model file, folded for a URDF]",
+    ),
+    click.option(
+        "--snap",
+        type=click.FloatRange(0, 0.01),
+        default=1e-11,
+        show_default=True,
+        help="Round rotation entries this close to 0, 1, -1, 1/2 or -1/2 to these values: the dust of "
+        "decimal angles.",
+    ),
+)
+"""The argument and options that every command on a model takes."""
+
+EMIT: tuple[Option, ...] = (
+    click.option(
+        "--out",
+        metavar="DIR",
+        type=click.Path(file_okay=False, path_type=str),
+        default=".",
+        help="Folder for the files; made if need be.  [default: the current folder]",
+    ),
+    click.option(
+        "--name", metavar="NAME", help="Prefix of functions and files.  [default: the model's name]"
+    ),
+    click.option(
+        "--with",
+        "functions",
+        type=click.Choice(["power"]),
+        multiple=True,
+        help="Further functions to write: power, the audit of through times across over all edges.",
+    ),
+    click.option(
+        "--only",
+        type=click.Choice(FUNCTIONS),
+        metavar="FUNCTION",
+        multiple=True,
+        help="Write nothing but this function and what it calls; repeatable. "
+        f"One of {', '.join(FUNCTIONS)}.",
+    ),
+    click.option(
+        "--lang",
+        "languages",
+        type=click.Choice(LANGUAGES),
+        multiple=True,
+        help="Language to write; repeatable.  [default: all]",
+    ),
+    click.option(
+        "--trig",
+        type=click.Choice(["libm", "inline"]),
+        default="libm",
+        show_default=True,
+        help="Sines and cosines in C: of <math.h>, or of the file itself, within 2 units in the last "
+        "place and for all joints at once.",
+    ),
+    click.option(
+        "--batch",
+        is_flag=True,
+        help="Write functions of many states in C, too: equations_batch(n, q, v, M, h) and the like, with "
+        "several states side by side in vector registers.",
+    ),
+)
+"""What `emit` takes besides."""
