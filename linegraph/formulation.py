@@ -259,7 +259,7 @@ def _network_of(model: Model) -> Network | None:
     """The network of a model; what derives it is imported where there is one."""
     if not model.components:
         return None
-    from linegraph.network import network_of
+    from linegraph.network.equations import network_of
 
     return network_of(model)
 

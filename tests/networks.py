@@ -9,7 +9,8 @@ import numpy as np
 
 from linegraph.algebra import Floats
 from linegraph.differentiation import Replay
-from linegraph.network import Network, network_of
+from linegraph.network import Network
+from linegraph.network.equations import network_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -1,6 +1,8 @@
-"""Scalar networks: from components to the states they need and the equations these obey."""
+"""Scalar networks: from components to the states they need and the equations these obey.
 
-from linegraph.network.equations import network_of
+`equations.network_of` derives them; it is imported where a model has components.
+"""
+
 from linegraph.network.network import Network, State
 
-__all__ = ["Network", "State", "network_of"]
+__all__ = ["Network", "State"]
