@@ -9,7 +9,6 @@ import numpy as np
 
 from linegraph.algebra import Floats
 from linegraph.differentiation import Replay
-from linegraph.network import Network
 from linegraph.network.equations import network_of
 
 if TYPE_CHECKING:
@@ -17,6 +16,7 @@ if TYPE_CHECKING:
 
     from linegraph import Model
     from linegraph.differentiation import Symbol
+    from linegraph.network import Network
 
 Array = Any
 
