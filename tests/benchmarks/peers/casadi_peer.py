@@ -102,13 +102,13 @@ def counts(robot: Robot) -> dict[str, dict[str, int]]:
     }
 
 
-def generation(robot: Robot) -> dict[str, float]:
-    """What generating the five functions costs, in the convention of fewer operations for M and h."""
+def generation(robot: Robot, functions: tuple[str, ...]) -> dict[str, float]:
+    """What generating functions costs, in the convention of fewer operations for M and h."""
     made = generated(robot)
     mark = min(CONVENTIONS.values(), key=lambda mark: made.operations(f"equations{mark}"))
     words = [str(robot.urdf), robot.base, str(folder("casadi", robot.name, "timed"))]
     cpu, memory, printed = spent(
-        [str(casadi_generator()), *words, *(f"{name}{mark}" for name in WRITTEN)]
+        [str(casadi_generator()), *words, *(f"{name}{mark}" for name in functions)]
     )
     report = json.loads(printed)
     inside = report["seconds"] + sum(made["seconds"] for made in report["functions"].values())

@@ -5,12 +5,11 @@ from __future__ import annotations
 import re
 import sys
 from dataclasses import dataclass
-from functools import cache
 from typing import TYPE_CHECKING
 
 from calls import FUNCTIONS, Call, Layout, Sizes, compile_seconds, compiled, folder, spent
 from environment import run
-from operations import FUNCTION, operations
+from operations import operations
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -70,13 +69,6 @@ class Emitted:
         return Layout(tuple(range(len(self.joints))), self.sizes.nv - len(self.joints))
 
 
-@cache
-def options() -> frozenset[str]:
-    """What `linegraph emit` understands."""
-    text = run([sys.executable, "-m", "linegraph", "emit", "--help"])
-    return frozenset(re.findall(r"--[a-z-]+", text))
-
-
 def command(robot: Robot, out: Path, *extra: str) -> list[str]:
     """Words of the command line, without the program."""
     words = ["emit", str(robot.urdf), "--base", robot.base, "--name", robot.name]
@@ -100,27 +92,18 @@ def emit(robot: Robot, variant: str = "plain", *extra: str) -> Emitted:
     return Emitted(robot.name, out, joints, Sizes(size["Q"], size["V"], size["U"]))
 
 
-def calls(robot: Robot, emitted: Emitted, function: str, runs: int) -> list[Call]:
-    """The function as emitted, and with `--trig inline` where that can be asked for."""
+def calls(robot: Robot, function: str, runs: int) -> list[Call]:
+    """The function as emitted, and with `--trig inline`."""
+    emitted = emit(robot, function, "--only", function)
     found = [_call("linegraph", emitted, function)]
-    alone = emitted.folder / f"only_{function}.c"
-    found[0].figures |= {
-        "operations": counted(emitted, function),
-        "bytes": alone.stat().st_size,
-        "compile_seconds": compile_seconds(alone, runs),
-    }
-    if "--trig" in options():
-        inline = emit(robot, "inline", "--trig", "inline")
-        found.append(_call("linegraph, --trig inline", inline, function))
-    return found
+    found[0].figures |= {"operations": counted(emitted), **whole(emitted, runs)}
+    inline = emit(robot, f"{function}_inline", "--only", function, "--trig", "inline")
+    return [*found, _call("linegraph, --trig inline", inline, function)]
 
 
 def batches(robot: Robot) -> list[Call]:
-    """Many states one by one and together; none where `--batch` is not known."""
-    if "--batch" not in options():
-        return []
-    extra = ("--trig", "inline") if "--trig" in options() else ()
-    emitted = emit(robot, "batch", "--batch", *extra)
+    """Many states one by one and together."""
+    emitted = emit(robot, "batch", "--only", "equations", "--batch")
     sizes = {"n": BATCH, "nq": emitted.sizes.nq, "nv": emitted.sizes.nv, "name": emitted.name}
     found = []
     for peer, function, body in (
@@ -143,41 +126,20 @@ def _call(peer: str, emitted: Emitted, function: str, body: str = "") -> Call:
     glue = emitted.folder / f"{slug}_{function}_call.c"
     name = emitted.name
     glue.write_text(GLUE.format(name=name, body=body))
-    source = emitted.folder / f"only_{function}.c"
-    source.write_text(only(emitted, function))
+    source = emitted.folder / f"{name}.c"
     library, for_valgrind = compiled(f"{slug}_{function}", [glue, source], emitted.folder)
     return Call(peer, function, library, for_valgrind, emitted.layout)
 
 
-def _bodies(emitted: Emitted) -> dict[str, str]:
-    return dict(FUNCTION.findall(emitted.source))
+def counted(emitted: Emitted) -> int:
+    """Operations of all functions together; a sign costs nothing."""
+    return sum(operations(emitted.source, signs=False).values())
 
 
-def _needed(emitted: Emitted, function: str) -> list[str]:
-    """A function and what it calls."""
-    bodies = _bodies(emitted)
-    needed = [f"{emitted.name}_{function}"]
-    for name in needed:
-        called = [other for other in bodies if re.search(rf"\b{other}\(", bodies[name])]
-        needed += [other for other in called if other not in needed]
-    return needed
-
-
-def only(emitted: Emitted, function: str) -> str:
-    """The C file with one function, what it calls, and what is not a public function."""
-    needed = _needed(emitted, function)
-    return FUNCTION.sub(lambda found: found[0] if found[1] in needed else "", emitted.source)
-
-
-def counted(emitted: Emitted, function: str) -> int:
-    """Operations of a function and what it calls; a sign costs nothing."""
-    counts = operations(emitted.source, signs=False)
-    return sum(counts[name] for name in _needed(emitted, function))
-
-
-def generation(robot: Robot) -> dict[str, float]:
-    """What emitting all functions as C costs: with and without the interpreter's start."""
-    words = command(robot, folder("linegraph", robot.name, "timed"))
+def generation(robot: Robot, functions: tuple[str, ...]) -> dict[str, float]:
+    """What emitting functions as C costs, all if none are named: with and without the interpreter's start."""
+    extra = [word for function in functions for word in ("--only", function)]
+    words = command(robot, folder("linegraph", robot.name, "timed"), *extra)
     cpu, memory, _ = spent([sys.executable, "-m", "linegraph", *words])
     _, _, printed = spent([sys.executable, "-c", INSIDE, *words])
     inside = float(printed.splitlines()[-1])
@@ -185,7 +147,7 @@ def generation(robot: Robot) -> dict[str, float]:
 
 
 def whole(emitted: Emitted, runs: int) -> dict[str, float]:
-    """Bytes and compile time of the C file with all functions."""
+    """Bytes and compile time of the C file."""
     path = emitted.folder / f"{emitted.name}.c"
     return {"bytes": path.stat().st_size, "compile_seconds": compile_seconds(path, runs)}
 

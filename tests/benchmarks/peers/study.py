@@ -5,6 +5,7 @@ from __future__ import annotations
 import statistics
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import linegraph_peer
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 Figures = dict[str, Any]
+
+FIVE = ("mass_matrix", "bias", "equations", "inverse_dynamics", "forward_dynamics")
+"""What both generators write."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +66,7 @@ def _robot(plan: Plan, system: Robot) -> Figures:
     emitted = linegraph_peer.emit(system)
     found: Figures = {"nv": emitted.sizes.nv, "base": system.base, "functions": {}}
     for function in plan.functions:
-        calls = [*linegraph_peer.calls(system, emitted, function, plan.runs)]
+        calls = [*linegraph_peer.calls(system, function, plan.runs)]
         calls += _peers(plan, system, emitted, function)
         found["functions"][function] = _measured(plan, calls, emitted.sizes)
     if "batch" not in plan.skip and (calls := linegraph_peer.batches(system)):
@@ -108,21 +112,28 @@ def _measured(plan: Plan, calls: list[Call], sizes: Sizes) -> dict[str, Figures]
 
 
 def _generation(plan: Plan, system: Robot, emitted: Emitted) -> dict[str, Figures]:
-    """What generating all functions costs, the peers interleaved; medians."""
-    makers: dict[str, Callable[[Robot], Figures]]
-    makers = {"linegraph": linegraph_peer.generation}
-    wholes = {"linegraph": linegraph_peer.whole(emitted, plan.runs)}
+    """What generating costs, the peers interleaved; medians."""
+    makers: dict[str, Callable[[], Figures]] = {
+        "linegraph, M and h": partial(linegraph_peer.generation, system, ("equations",)),
+        "linegraph, five functions": partial(linegraph_peer.generation, system, FIVE),
+        "linegraph, everything": partial(linegraph_peer.generation, system, ()),
+    }
+    wholes = {"linegraph, everything": linegraph_peer.whole(emitted, plan.runs)}
+    five = linegraph_peer.emit(system, "five", *(w for f in FIVE for w in ("--only", f)))
+    wholes["linegraph, five functions"] = linegraph_peer.whole(five, plan.runs)
     if "casadi" not in plan.skip:
         import casadi_peer
 
-        makers["CasADi"] = casadi_peer.generation
-        wholes["CasADi"] = casadi_peer.whole(system, plan.runs)
+        makers["CasADi, M and h"] = partial(casadi_peer.generation, system, ("equations",))
+        makers["CasADi, five functions"] = partial(casadi_peer.generation, system, FIVE)
+        wholes["CasADi, five functions"] = casadi_peer.whole(system, plan.runs)
     samples: dict[str, list[Figures]] = {peer: [] for peer in makers}
     for _ in range(plan.runs):
         for peer, maker in makers.items():
-            samples[peer].append(maker(system))
+            samples[peer].append(maker())
     return {
-        peer: {key: statistics.median(run[key] for run in runs) for key in runs[0]} | wholes[peer]
+        peer: {key: statistics.median(run[key] for run in runs) for key in runs[0]}
+        | wholes.get(peer, {})
         for peer, runs in samples.items()
     }
 
@@ -133,7 +144,7 @@ def _short(plan: Plan, n: int) -> dict[str, Figures]:
 
     system = robot(f"planar{n}", folder("robots"))
     emitted = linegraph_peer.emit(system)
-    calls = linegraph_peer.calls(system, emitted, "equations", plan.runs)
-    generation = linegraph_peer.generation(system)
+    calls = linegraph_peer.calls(system, "equations", plan.runs)
+    generation = linegraph_peer.generation(system, ("equations",))
     calls[0].figures |= {f"generation_{key}": value for key, value in generation.items()}
     return _measured(plan, [*calls, *sympy_peer.calls(emitted, n, plan.runs)], emitted.sizes)

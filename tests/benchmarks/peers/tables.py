@@ -47,7 +47,7 @@ CasADi: Pinocchio's algorithms over its symbols, in the convention (frames in th
 or of the world) that takes fewer operations, `cse` on; M packed as its upper triangle, or dense.
 linegraph writes M dense. MuJoCo: kinematics, comPos, comVel and makeM, rne, factorM, solveM as needed.
 generation: from the URDF to C. Process: all of it; inside: without the start of interpreter and libraries.
-CasADi writes M, h, both, inverse and forward dynamics; linegraph these and energies, reactions, ...
+The five functions are M, h, both, inverse and forward dynamics; everything has energies, reactions, ... too.
 """
 
 
@@ -107,16 +107,22 @@ def counted(found: Figures) -> list[str]:
 
 def markdown(found: Figures) -> str:
     """The table of the README: M and h in one call, by robot."""
-    peers = ("linegraph", "CasADi", "Pinocchio C++", "MuJoCo")
-    head = ["robot", *(f"{peer}, ns" for peer in peers), "operations", "generating, s"]
+    peers = ("linegraph", "linegraph, --trig inline", "CasADi", "Pinocchio C++", "MuJoCo")
+    titles = ("linegraph", "`--trig inline`", "CasADi", "Pinocchio C++", "MuJoCo")
+    head = ["M and h, ns", *titles, "operations", "generating, s", "batch, ns"]
     lines = [_row(head), _row(["---"] * len(head))]
     for name, figures in found["robots"].items():
         rows = figures["functions"].get("equations", {})
         times = [_cell(rows, peer, "ns", "{:.0f}") for peer in peers]
-        operations = " / ".join(_cell(rows, peer, "operations", "{:.0f}") for peer in peers[:2])
+        pair = ("linegraph", "CasADi")
+        operations = " / ".join(_cell(rows, peer, "operations", "{:.0f}") for peer in pair)
         generation = figures.get("generation", {})
-        seconds = " / ".join(_cell(generation, peer, "process", "{:.2f}") for peer in peers[:2])
-        lines.append(_row([f"{name} ({figures['nv']})", *times, operations, seconds]))
+        seconds = " / ".join(
+            _cell(generation, f"{peer}, M and h", "process", "{:.2f}") for peer in pair
+        )
+        many = figures["functions"].get("equations of many states", {})
+        batch = _cell(many, "linegraph, in a batch", "ns", "{:.0f}")
+        lines.append(_row([f"{name} ({figures['nv']})", *times, operations, seconds, batch]))
     return "\n".join(lines)
 
 
