@@ -54,7 +54,7 @@ class Angles:
         self.reads = frozenset(name for key in early for name in known[key] or ())
         self._place = {key: k for k, key in enumerate(early)}
         self._place |= {key: self.filled + k for k, key in enumerate(late)}
-        self._late = {key: next_index(items, key) for key in late}
+        self._late = {key: _first_use(items, key) for key in late}
 
     def has(self, node: Node) -> bool:
         """Whether a node is sine or cosine of one of the angles."""
@@ -85,7 +85,7 @@ class Angles:
         return kept[::-1]
 
 
-def next_index(items: Sequence[Item], key: int) -> int:
+def _first_use(items: Sequence[Item], key: int) -> int:
     """The first sine or cosine of an angle."""
     return next(
         x.node.index

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from codegen import batch, declare, layout, prose, routines, straight, templates
@@ -81,12 +82,12 @@ def _needs(
     text = "\n".join(line for _, body in (*functions, *wide) for line in body)
     heads = "\n".join(head for head, _ in (*functions, *wide))
     marks = {
-        "sign": "sign_of(",
-        "one": f"{name}_sincos(",
-        "all": f"{name}_all_sincos(",
-        "lanes_sincos": f"{name}_lanes_sincos(",
+        "sign": "sign_of",
+        "one": f"{name}_sincos",
+        "all": f"{name}_all_sincos",
+        "lanes_sincos": f"{name}_lanes_sincos",
     }
-    found = {key for key, mark in marks.items() if mark in text}
+    found = {key for key, mark in marks.items() if re.search(rf"\b{mark}\(", text)}
     return found | {"part" for _ in range(f"{name.upper()}_PART " in heads)}
 
 

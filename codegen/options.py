@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from linegraph.errors import ModelError
+
 TRIG = ("libm", "inline")
 """Whose sine and cosine C calls: the library's, or those of the emitted file itself."""
 
@@ -19,6 +21,13 @@ class Options:
 
     trig: str = TRIG[0]
     batch: bool = False
+
+    def __post_init__(self) -> None:
+        """Raises `ModelError` for what is no choice."""
+        if self.trig not in TRIG:
+            raise ModelError(f'trig "{self.trig}"', f"is not known; known: {', '.join(TRIG)}")
+        if not isinstance(self.batch, bool):
+            raise ModelError("batch", f"is True or False, not {self.batch!r}")
 
 
 DEFAULT = Options()

@@ -10,7 +10,7 @@ import re
 from typing import TYPE_CHECKING
 
 from codegen import layout, templates
-from linegraph.program import Routine
+from linegraph.program import PREPARED_SUFFIX, Routine
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -106,7 +106,7 @@ def _calling(module: Module, routine: Routine, prefix: str) -> Callable[..., str
 
     def call(name: str, *results: str, **renamed: str) -> str:
         if name not in routine.uses:
-            name += "_prepared"
+            name += PREPARED_SUFFIX
         if name not in routine.uses:
             raise ValueError(f"{routine.name} does not say that it calls {name}")
         given = [renamed.get(x.name, x.name) for x in programs[name].arguments]

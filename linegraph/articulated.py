@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from linegraph import vector
 from linegraph.algebra import set_label
 from linegraph.factorization import Solution
-from linegraph.orthogonality import Arm, gathered
+from linegraph.orthogonality import Arm, applied_to, gathered
 from linegraph.spins import inertia_forces
 from linegraph.vector import ZERO, Matrix, Scalar, Vector, add, cross, dot, subtract
 
@@ -42,8 +42,8 @@ class Articulated(NamedTuple):
     def apply(self, angular: Vector, linear: Vector) -> tuple[Vector, Vector]:
         """(n, f) of accelerations (α, a)."""
         b = self.b
-        torque = add(_symmetric(self.a, angular), vector.times(b, linear))
-        force = add(vector.times(vector.transpose(b), angular), _symmetric(self.c, linear))
+        torque = add(applied_to(self.a, angular), vector.times(b, linear))
+        force = add(vector.times(vector.transpose(b), angular), applied_to(self.c, linear))
         return torque, force
 
     def without(self, freed: Freed) -> Articulated:
@@ -90,7 +90,7 @@ class Articulated(NamedTuple):
 
 def rigid(moments: Moments) -> Articulated:
     """The map of a single rigid body: n = J α + b x a, f = α x b + m a."""
-    m, (x, y, z), _ = moments
+    m, (x, y, z), *_ = moments
     return Articulated(moments.inertia, ((0, -z, y), (z, 0, -x), (-y, x, 0)), (m, 0, 0, m, 0, m))
 
 
@@ -202,10 +202,6 @@ def _accelerations(
             incoming = add(incoming, vector.scale(result[k], arm.motion.linear[a]))
         reached.append((inner, incoming))
     return result
-
-
-def _symmetric(j: Inertia, a: Vector) -> Vector:
-    return vector.times(_square(j), a)
 
 
 def _square(j: Inertia) -> Matrix:

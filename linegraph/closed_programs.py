@@ -8,7 +8,7 @@ from linegraph import network_programs
 from linegraph.errors import ModelError
 from linegraph.layout import has_plain_rates
 from linegraph.parameters import resolver
-from linegraph.program import Argument, Listing, Program, Quantity, Result, Routine
+from linegraph.program import Argument, Listing, Program, Quantity, Result, Routine, reads
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -299,7 +299,9 @@ def _routine(
     calls: tuple[str, ...],
 ) -> Routine:
     """A routine; it takes the inputs too where what it calls does."""
-    if f.driven_constraints and "u" not in arguments:
+    # a motion prescribed by input is in M and h
+    moved = (f.mass_matrix, f.bias) if {"mass_matrix", "equations"} & {*calls} else ()
+    if (f.driven_constraints or reads("u", moved)) and "u" not in arguments:
         place = sum(argument in ("q", "v", "s", "w") for argument in arguments)
         arguments = (*arguments[:place], "u", *arguments[place:])
     chosen = independent(f)

@@ -105,7 +105,7 @@ def _at_joint(arm: Arm, near: Spin, composite: Moments) -> _Joint:
     rotation, motion = arm.rotation, arm.motion
     seen = seen_near(arm)
     if all(isinstance(x, (int, float)) for s in (*seen.angular, *seen.linear) for x in s):
-        mass, first, second = composite
+        mass, first, second, _ = composite
         turned = Moments(mass, rotation.out(first), rotation.congruence(second))
         return _Joint(seen, turned, near._replace(linear=pull), rotation, near=True)
     into = rotation.into
@@ -115,7 +115,7 @@ def _at_joint(arm: Arm, near: Spin, composite: Moments) -> _Joint:
 
 def _added(composite: Moments, here: Crossing) -> Wrench:
     """Force and torque about a link's origin of what its joint adds to the accelerations beyond it."""
-    mass, first, second = composite
+    mass, first, second, _ = composite
     w, sums = here.turning, add(here.before, here.velocity)
     field = _turning(w, sums)
     force = add(vector.scale(mass, here.linear), cross(here.angular, first))

@@ -4,9 +4,10 @@ With k for constants, of which parameters or numbers are all they depend on:
 
     x / k = x (1 / k)               (x k1) k2 = x (k1 k2)
     (x k) y = (x y) k               x k1 + x k2 = x (k1 + k2)
-    x k + y k = (x + y) k           (x + k1) + (y + k2) = (x + y) + (k1 + k2)
+    x k + y k = (x + y) k
 
-Nothing is rearranged that would take more operations.
+Nothing is rearranged that would take more operations. Summands stay where they are: k1 may be there to make
+x + k1 small.
 """
 
 from __future__ import annotations
@@ -87,7 +88,7 @@ class Restructured:
         return self._dag.multiply(x, self._dag.multiply(k, b))
 
     def _sum(self, node: Node) -> Operand:
-        """``a + b`` or ``a - b``; constants meet as factors or as summands."""
+        """``a + b`` or ``a - b``; constants meet as factors."""
         a, b = self._of(node.a), self._of(node.b)
         if node.op == SUB:
             b = self._dag.negate(b)
@@ -102,14 +103,7 @@ class Restructured:
             if fewer and k != 1 and (k is m or (k == m and not isinstance(k, Node))):
                 rest = self._dag.add(sign * x, other * y)
                 return self._product(rest, k)
-        return self._constants_last(a, b, fewer)
-
-    def _constants_last(self, a: Node, b: Node, fewer: bool) -> Operand:
-        """``a + b``; constant summands of both are added to each other, if that takes `fewer` operations."""
-        (x, k), (y, m) = self._summands(a), self._summands(b)
-        if k == 0 or m == 0 or not (fewer or x == 0 or y == 0):
-            return self._dag.add(a, b)
-        return self._dag.add(self._dag.add(x, y), self._dag.add(k, m))
+        return self._dag.add(a, b)
 
     def _factors(self, x: Node) -> tuple[Operand, Operand]:
         """A factor that varies and a constant one."""
@@ -121,20 +115,6 @@ class Restructured:
                 if self._holds(k):
                     return varying, k
         return x, 1
-
-    def _summands(self, x: Node) -> tuple[Operand, Operand]:
-        """A summand that varies and a constant one."""
-        if self._holds(x):
-            return 0, x
-        if x.op == NEG:
-            varying, k = self._summands(x.a)
-            return self._dag.negate(varying), self._dag.negate(k)
-        if x.op in (ADD, SUB):
-            second = self._dag.negate(x.b) if x.op == SUB else x.b
-            for varying, k in ((x.a, second), (second, x.a)):
-                if self._holds(k):
-                    return varying, k
-        return x, 0
 
     @staticmethod
     def _size(k: Operand) -> tuple[Operand, int]:

@@ -104,8 +104,6 @@ def render(
         if language not in codegen.LANGUAGES:
             known = ", ".join(codegen.LANGUAGES)
             raise ModelError(f'language "{language}"', f"is not known; known: {known}")
-    if trig not in codegen.TRIG:
-        raise ModelError(f'trig "{trig}"', f"is not known; known: {', '.join(codegen.TRIG)}")
     options = codegen.Options(trig, batch)
     prefix = codegen.naming.identifier(model.name) if name is None else name
     tell("deriving")

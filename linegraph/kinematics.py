@@ -1,4 +1,4 @@
-"""Stage 3: the links of a mechanical tree, each in the frame in which its equations are shortest.
+"""Stage 3: the links of a mechanical tree, each in a frame of its joint.
 
 A *link* is all bodies welded together beyond one moving joint. Its working frame has its origin at that
 joint and z along the joint's axis. Whatever is constant is folded here once: placements, alignments,
@@ -17,7 +17,7 @@ from linegraph.algebra import Constants
 from linegraph.body import Body, Placement
 from linegraph.joints import Joint, Moments
 from linegraph.joints.base import Restriction, point_apart, second_moments
-from linegraph.rotation import Rotation, product, rotation_of, snapped
+from linegraph.rotation import Diagonal, Rotation, product, rotation_of, snapped
 from linegraph.vector import ZERO, Matrix, Scalar, Vector
 
 if TYPE_CHECKING:
@@ -73,12 +73,6 @@ class Link:
     def in_space(self) -> bool:
         """Whether its joint's rotation is that to ground axes: an orientation in space of its own."""
         return self.place.in_space
-
-    @property
-    def numeric(self) -> bool:
-        """Whether the mass distribution is made of numbers."""
-        scalars = (self.moments.mass, *self.moments.first, *self.moments.second)
-        return all(isinstance(x, (int, float)) for x in scalars)
 
 
 class Seat(NamedTuple):
@@ -196,7 +190,8 @@ class KinematicTree:
             split = point_apart if link.place.level else link.joint.regroup
             kept, handed = split(link.moments)
             if in_plane[i]:
-                kept = kept._replace(second=(kept.inertia[5], 0, 0, 0, 0, 0))
+                about = kept.inertia[5]
+                kept = kept._replace(second=(about, 0, 0, 0, 0, 0), about=(None, None, about))
             links[i] = replace(link, moments=kept, in_plane=in_plane[i])
             if parent is not None:
                 shifted = carried(handed, link.rotation, link.at)
@@ -244,7 +239,18 @@ def carried(moments: Moments, rotation: Rotation, at: Vector) -> Moments:
             yz + (at[1] * b[2] + at[2] * first[1]),
             zz + _spread(at[2], b[2], first[2]),
         ),
+        _about(moments, rotation, at, vector.add(b, first)),
     )
+
+
+def _about(moments: Moments, rotation: Rotation, at: Vector, twice: Vector) -> Diagonal:
+    """The diagonal of J, where it was known, in outer axes and about the outer origin."""
+    known = rotation.diagonal(moments.about)
+    p = tuple(x * y for x, y in zip(at, twice, strict=True))
+    x, y, z = (
+        None if j is None else j + (p[(k + 1) % 3] + p[(k + 2) % 3]) for k, j in enumerate(known)
+    )
+    return (x, y, z)
 
 
 def carried_in_plane(moments: Moments, rotation: Rotation, at: Vector) -> Moments:
@@ -255,7 +261,7 @@ def carried_in_plane(moments: Moments, rotation: Rotation, at: Vector) -> Moment
     # one after the other: with the first, the sum is what M has beside its diagonal
     about = about + (at[0] * b[0] + at[1] * b[1])
     about = about + (at[0] * first[0] + at[1] * first[1])
-    return Moments(moments.mass, first, (about, 0, 0, 0, 0, 0))
+    return Moments(moments.mass, first, (about, 0, 0, 0, 0, 0), (None, None, about))
 
 
 def _spread(at: Scalar, inner: Scalar, outer: Scalar) -> Scalar:
@@ -267,7 +273,9 @@ def _spread(at: Scalar, inner: Scalar, outer: Scalar) -> Scalar:
 def joined(a: Moments, b: Moments) -> Moments:
     """The moments of two bodies together, about one origin and in one frame."""
     second = tuple(x + y for x, y in zip(a.second, b.second, strict=True))
-    return Moments(a.mass + b.mass, vector.add(a.first, b.first), second)
+    known = zip(a.about, b.about, strict=True)
+    x, y, z = (None if j is None or k is None else j + k for j, k in known)
+    return Moments(a.mass + b.mass, vector.add(a.first, b.first), second, (x, y, z))
 
 
 def body_moments(body: Body, resolve: Resolve, pose: Placement) -> Moments:
@@ -276,13 +284,14 @@ def body_moments(body: Body, resolve: Resolve, pose: Placement) -> Moments:
     From the mass centre in one step: what a shift adds and the next one takes off would leave its rounding.
     """
     mass = resolve(body.mass)
-    second = second_moments(tuple(resolve(x) for x in body.inertia))
+    given = tuple(resolve(x) for x in body.inertia)
+    second, about = second_moments(given), (given[0], given[3], given[5])
     rotation = rotation_of(pose.rotation)
     if body.first is not None:
-        about_origin = Moments(mass, resolved(body.first, resolve), second)
+        about_origin = Moments(mass, resolved(body.first, resolve), second, about)
         return carried(about_origin, rotation, pose.at)
     center = rotation.out(resolved(body.center or ZERO, resolve))
-    return carried(Moments(mass, ZERO, second), rotation, vector.add(pose.at, center))
+    return carried(Moments(mass, ZERO, second, about), rotation, vector.add(pose.at, center))
 
 
 def mass_center(body: Body, resolve: Resolve) -> Vector:

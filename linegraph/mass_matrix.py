@@ -137,13 +137,16 @@ def composites(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> lis
             in_plane = link.in_plane and tree.links[link.parent].in_plane
             carry_over = carried_in_plane if in_plane else carried
             seen = carry_over(carry, crossed[i].rotation, crossed[i].at)
-            moments[link.parent] = joined(moments[link.parent], seen)
+            # what depends on q is known by its sums with fewer operations
+            both = joined(moments[link.parent], seen)
+            in_plane = tree.links[link.parent].in_plane
+            moments[link.parent] = both if in_plane else both._replace(about=(None, None, None))
     return moments
 
 
 def _inertia_force(composite: Moments, angular: Vector, linear: Vector) -> tuple[Vector, Vector]:
     """Force and torque about the origin for accelerations (angular, linear) of a composite at rest."""
-    mass, first, _ = composite
+    mass, first, *_ = composite
     force = add(vector.scale(mass, linear), cross(angular, first))
     torque = add(applied_to(composite.inertia, angular), cross(first, linear))
     return force, torque

@@ -106,8 +106,9 @@ def _in_a_run(algebra: Algebra, link: Link, arm: Arm, found: Sequence[Arm], angl
     turn = Rotation((Turn(2, algebra.cos(angle), algebra.sin(angle)),))
     if not link.still:
         return arm._replace(rotation=rotation @ turn)
-    mass, first, second = arm.moments
-    seen = Moments(mass, turn.out(first), second if link.in_plane else turn.congruence(second))
+    mass, first, second, about = arm.moments
+    second = second if link.in_plane else turn.congruence(second)
+    seen = Moments(mass, turn.out(first), second, (None, None, about[2]))
     return arm._replace(rotation=rotation, moments=seen, turn=turn, angle=angle)
 
 
@@ -211,7 +212,7 @@ def energy(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> tuple[S
         turned = ZERO if arm.level else arm.rotation.into(angular)
         angular = add(turned, vector.combine(arm.rates, arm.motion.angular))
         velocities.append((angular, linear))
-        mass, first, _ = arm.moments
+        mass, first, *_ = arm.moments
         momentum = add(vector.scale(mass, linear), cross(angular, first))
         spin = add(applied_to(arm.moments.inertia, angular), cross(first, linear))
         kinetic = kinetic + (dot(linear, momentum) + dot(angular, spin))

@@ -171,7 +171,7 @@ def _central(link: Link) -> tuple[Scalar, Vector, Inertia]:
     Raises:
         ModelError: it has no mass but a first moment.
     """
-    m, first, _ = link.moments
+    m, first, *_ = link.moments
     xx, xy, xz, yy, yz, zz = link.moments.inertia
     if m == 0:
         if not vector.is_zero(first):

@@ -210,7 +210,7 @@ class _Handing:
     def _counted(self, program: Program | Routine) -> _Cost:
         if isinstance(program, Routine):
             inner = [self._cost(name) for name in program.uses]
-            return _together(0, inner)
+            return _together(inner)
         inner = [self._cost(call.program) for call in program.calls]
         live = [node for node in live_nodes(program) if node.op != SYMBOL]
         constant = [node for node in live if is_constant(node, self._constant)]
@@ -220,7 +220,7 @@ class _Handing:
             frozenset(node.index for node in constant if node.op != NEG),
             frozenset(x.index for x in divisors if isinstance(x, Node)),
         )
-        return _together(0, [own, *inner])
+        return _together([own, *inner])
 
 
 def _judged(programs: Iterable[Program]) -> frozenset[int]:
@@ -252,10 +252,10 @@ def _twin(program: T, size: int) -> T:
     return replace(program, name=name, about=about, arguments=given, calls=calls)
 
 
-def _together(total: int, costs: Sequence[_Cost]) -> _Cost:
+def _together(costs: Sequence[_Cost]) -> _Cost:
     none = frozenset[int]()
     return _Cost(
-        total + sum(cost.total for cost in costs),
+        sum(cost.total for cost in costs),
         none.union(*(cost.constant for cost in costs)),
         none.union(*(cost.divisors for cost in costs)),
     )

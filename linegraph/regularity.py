@@ -78,7 +78,7 @@ class _Anything:
 
 def is_solid(link: Link) -> bool:
     """Whether mass and central inertia are positive, with a margin, and the joint's freedoms independent."""
-    m, (x, y, z), _ = link.moments
+    m, (x, y, z), *_ = link.moments
     xx, xy, xz, yy, yz, zz = link.moments.inertia
     if m <= 0 or link.joint.singular:
         return False

@@ -17,6 +17,9 @@ from linegraph.vector import Matrix, Scalar, Vector, times, transpose
 Inertia = tuple[Scalar, Scalar, Scalar, Scalar, Scalar, Scalar]
 """A symmetric tensor: (xx, xy, xz, yy, yz, zz)."""
 
+Diagonal = tuple[Scalar | None, Scalar | None, Scalar | None]
+"""The entries xx, yy, zz of a tensor, those that are known."""
+
 IDENTITY_MATRIX: Matrix = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 _PLACE = ((0, 1, 2), (1, 3, 4), (2, 4, 5))
 
@@ -216,6 +219,18 @@ class Rotation:
             m = factor.similarity(m)
         return m
 
+    def diagonal(self, known: Diagonal) -> Diagonal:
+        """Of a tensor's diagonal the entries that are known in outer axes when some are in inner ones."""
+        for factor in reversed(self.factors):
+            if isinstance(factor, Relabel):
+                i, j, k = factor.source
+                known = (known[i], known[j], known[k])
+            else:
+                axis = factor.axis if isinstance(factor, Turn) else None
+                x, y, z = (entry if k == axis else None for k, entry in enumerate(known))
+                known = (x, y, z)
+        return known
+
     def inverse(self) -> Rotation:
         """``R^T``."""
         return Rotation(tuple(factor.inverse() for factor in reversed(self.factors)))
@@ -244,6 +259,9 @@ def rotation_of(m: Matrix) -> Rotation:
     return Rotation((Full(m),))
 
 
+ROUNDING = 4e-15
+"""Of products of a rotation's rows."""
+
 _ROOTS = (math.sqrt(0.5), math.sqrt(0.75))
 _EXACT = (0, 1, -1, 0.5, -0.5, *_ROOTS, *(-x for x in _ROOTS))
 
@@ -251,7 +269,8 @@ _EXACT = (0, 1, -1, 0.5, -0.5, *_ROOTS, *(-x for x in _ROOTS))
 def snapped(m: Matrix, within: float) -> Matrix:
     """Numbers closer than `within` to 0, 1, -1, 1/2 or -1/2 replaced by these exactly.
 
-    So are their partners in a turn by 45, 30 or 60 degrees, or the matrix would lose its orthogonality.
+    So are their partners in a turn by 45, 30 or 60 degrees, or the matrix would lose its orthogonality. Where
+    it would all the same, because a number is near and its partner is not, nothing is replaced.
     """
 
     def snap(x: Scalar) -> Scalar:
@@ -262,7 +281,20 @@ def snapped(m: Matrix, within: float) -> Matrix:
         return x
 
     x, y, z = (tuple(snap(entry) for entry in row) for row in m)
-    return (x, y, z)
+    replaced: Matrix = (x, y, z)
+    numbers = all(isinstance(entry, (int, float)) for row in m for entry in row)
+    loses = numbers and deviation(replaced) > deviation(m) + ROUNDING
+    return m if loses else replaced
+
+
+def deviation(m: Matrix) -> float:
+    """How far the rows of a matrix of numbers are from orthonormal ones."""
+    products = (
+        abs(sum(a * b for a, b in zip(p, q, strict=True)) - (i == j))
+        for i, p in enumerate(m)
+        for j, q in enumerate(m[: i + 1])
+    )
+    return float(max(products))
 
 
 def product(a: Matrix, b: Matrix) -> Matrix:

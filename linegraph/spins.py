@@ -145,7 +145,7 @@ def d_alembert(moments: Moments, spin: Spin) -> tuple[Vector, Vector]:
     f = m a + U b and n = b x a + the axial vector of U S, with b and S the first and second moments; it is
     written with the entries of U, which the force and the arms need anyway.
     """
-    mass, first, second = moments
+    mass, first, second, _ = moments
     force = add(vector.scale(mass, spin.linear), accelerated(spin, first))
     xx, xy, xz, yy, yz, zz = _products(spin.velocity)
     x, y, z = spin.angular

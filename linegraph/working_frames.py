@@ -1,8 +1,7 @@
 """Working frames in which the equations of motion are shortest.
 
 About and along its joint's axis a link's working frame may stand where one likes: the motion stays the
-same. So a joint of several axes
-is taken apart first (`expansion`), and each link is
+same. So a joint of several axes is taken apart first (`expansion`), and each link is
 
     turned   until the constant rotation to a child, or the way to it, needs fewer components;
     slid     until as many components of the arms as can be are zero;
@@ -23,7 +22,15 @@ from linegraph import vector
 from linegraph.body import Placement
 from linegraph.expansion import expanded
 from linegraph.kinematics import KinematicTree, Link, carried, compose, parallel
-from linegraph.rotation import IDENTITY_MATRIX, Rotation, Turn, product, rotation_of, snapped
+from linegraph.rotation import (
+    IDENTITY_MATRIX,
+    Rotation,
+    Turn,
+    deviation,
+    product,
+    rotation_of,
+    snapped,
+)
 from linegraph.vector import ZERO, Matrix, Scalar, Vector, add, cross, subtract
 
 if TYPE_CHECKING:
@@ -224,7 +231,7 @@ def _seen_from(link: Link, back: Matrix) -> Link:
     at = link.at if m is None else _swept(vector.times(back, link.at), link.at)
     m = snapped(m if m is not None else link.rotation.matrix(), DUST)
     rotation = rotation_of(m)
-    constant = all(x in (0, 1, -1) for row in m for x in row)
+    constant = all(x in (0, 1, -1) for row in m for x in row) or deviation(m) > DUST
     if constant or not (_apart(m) or parallel(link)) or not _many(rotation, link):
         return replace(link, rotation=rotation, at=at)
     outer, middle, inner = _angles(m)

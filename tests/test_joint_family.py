@@ -346,12 +346,12 @@ def test_what_is_handed_to_the_tail_body() -> None:
     for word in ("spherical", "universal"):
         kept, handed = JOINTS[word]("joint", ("a", "b")).regroup(solid)
         assert (kept.mass, kept.first, kept.second) == (0, solid.first, solid.second)
-        assert handed == (3.0, (0, 0, 0), (0, 0, 0, 0, 0, 0))
+        assert handed[:3] == (3.0, (0, 0, 0), (0, 0, 0, 0, 0, 0))
     for word in ("cylindrical", "helical", "planar"):
         options = {"lead": 0.1} if word == "helical" else {}
         kept, handed = JOINTS[word]("joint", ("a", "b"), **options).regroup(solid)
         assert (kept.mass, kept.first) == (solid.mass, solid.first)
-        assert handed == (0, (0, 0, 0), (0, 0, 0, 0, 0, 1.2))
+        assert handed[:3] == (0, (0, 0, 0), (0, 0, 0, 0, 0, 1.2))
         assert kept.second == (*solid.second[:5], 0)
     gimbal = Compound("joint", ("a", "b"), parts=(("revolute", X), ("revolute", Y)))
     assert gimbal.regroup(solid)[0] == solid

@@ -230,8 +230,8 @@ def test_alignment_of_integers_is_integral() -> None:
 
 
 def test_snapping_replaces_what_is_near_and_nothing_else() -> None:
-    m = ((1 - 1e-12, 1e-12, -1e-12), (0.5 + 1e-12, -0.5 - 1e-12, -1 + 1e-12), (0.3, 1e-10, 0.866))
-    assert snapped(m, 1e-11) == ((1, 0, 0), (0.5, -0.5, -1), (0.3, 1e-10, 0.866))
+    m = ((1 - 1e-12, 1e-12, -1e-12), (-1e-12, 0.6, -0.8), (1e-10, 0.8, 0.6))
+    assert snapped(m, 1e-11) == ((1, 0, 0), (0, 0.6, -0.8), (1e-10, 0.8, 0.6))
     assert snapped(m, 0) == m
     assert all(isinstance(x, int) for x in snapped(m, 1e-11)[0])
 

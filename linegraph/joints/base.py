@@ -13,12 +13,13 @@ coordinates are where they are none of the state.
 
 from __future__ import annotations
 
+import math
 from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from linegraph.errors import ModelError
-from linegraph.rotation import IDENTITY_MATRIX, Inertia, Rotation
+from linegraph.rotation import IDENTITY_MATRIX, Diagonal, Inertia, Rotation
 from linegraph.vector import ZERO, Matrix, Scalar, Vector
 
 if TYPE_CHECKING:
@@ -59,27 +60,40 @@ class Moments(NamedTuple):
 
     The second moments S are carried from frame to frame with fewer operations than the inertia tensor
     J = tr(S) 1 - S, and what an acceleration field does to a body is linear in them.
+
+    Attributes:
+        mass, first, second: m, ∫ r dm and ∫ r r^T dm.
+        about: the diagonal of J as far as it is known without the sums of S, of which small ones would not be
+            left to the last digit, and zeros not be zero.
     """
 
     mass: Scalar
     first: Vector
     second: Inertia
+    about: Diagonal = (None, None, None)
 
     @property
     def inertia(self) -> Inertia:
         """J about the origin."""
         xx, xy, xz, yy, yz, zz = self.second
-        return (yy + zz, -xy, -xz, xx + zz, -yz, xx + yy)
+        sums = (yy + zz, xx + zz, xx + yy)
+        x, y, z = (s if known is None else known for s, known in zip(sums, self.about, strict=True))
+        return (x, -xy, -xz, y, -yz, z)
 
 
-NO_MOMENTS = Moments(0, ZERO, (0, 0, 0, 0, 0, 0))
+NO_MOMENTS = Moments(0, ZERO, (0, 0, 0, 0, 0, 0), (0, 0, 0))
 
 
 def second_moments(inertia: Inertia) -> Inertia:
-    """``S = tr(J) / 2 - J``; of a planar body, whose J has no more than zz, S is what gives that zz."""
+    """``S = tr(J) / 2 - J``, of numbers to the last digit, however slender the body.
+
+    Of a planar body, whose J has no more than zz, S is what gives that zz.
+    """
     xx, xy, xz, yy, yz, zz = inertia
-    half = (xx + yy + zz) / 2
-    return (half - xx, -xy, -xz, half - yy, -yz, half - zz)
+    numbers = all(isinstance(x, (int, float)) for x in (xx, yy, zz))
+    x, y, z = ((yy, zz, -xx), (xx, zz, -yy), (xx, yy, -zz))
+    sums = [math.fsum(a) if numbers else a[0] + a[1] + a[2] for a in (x, y, z)]
+    return (sums[0] / 2, -xy, -xz, sums[1] / 2, -yz, sums[2] / 2)
 
 
 class Along(NamedTuple):
@@ -290,11 +304,11 @@ def angle_about_z(algebra: Algebra, rotation: Matrix) -> Scalar:
 
 def point_apart(head: Moments) -> tuple[Moments, Moments]:
     """The mass as a point at the origin, handed over: for joints whose frames have their origin in common."""
-    return Moments(0, head.first, head.second), Moments(head.mass, ZERO, (0, 0, 0, 0, 0, 0))
+    return head._replace(mass=0), NO_MOMENTS._replace(mass=head.mass)
 
 
 def round_apart(head: Moments) -> tuple[Moments, Moments]:
     """The spread along z, handed over: for joints whose frames have the direction of z in common."""
     *others, zz = head.second
-    kept = Moments(head.mass, head.first, (*others, 0))
+    kept = Moments(head.mass, head.first, (*others, 0), (None, None, head.about[2]))
     return kept, Moments(0, ZERO, (0, 0, 0, 0, 0, zz))

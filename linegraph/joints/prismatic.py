@@ -51,9 +51,9 @@ class Prismatic(Joint):
         return Motion(Rotation(), (0, 0, q[0]), (ZERO,), ((0, 0, 1),))
 
     def regroup(self, head: Moments) -> tuple[Moments, Moments]:
-        """Hand over the inertia tensor: head and tail turn alike."""
+        """Hand over the second moments: head and tail turn alike."""
         kept = Moments(head.mass, head.first, (0, 0, 0, 0, 0, 0))
-        return kept, Moments(0, ZERO, head.second)
+        return kept, Moments(0, ZERO, head.second, head.about)
 
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
         """No shift but along the axis, no turn."""

@@ -61,7 +61,7 @@ class Revolute(Joint):
         """
         x, y, z = head.first
         *others, zz = head.second
-        kept = Moments(0, (x, y, 0), (*others, 0))
+        kept = Moments(0, (x, y, 0), (*others, 0), (None, None, head.about[2]))
         return kept, Moments(head.mass, (0, 0, z), (0, 0, 0, 0, 0, zz))
 
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
