@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 Z = (0, 0, 1)
 
 
-@pytest.mark.parametrize("small", [1e-3, 1e-6, 1e-9, 1e-11])
+@pytest.mark.parametrize("small", [1e-3, 1e-6, 1e-9, 1e-10])
 @pytest.mark.parametrize("large", [(1 / 12, 1 / 12), (50.0, 50.0), (49.7, 50.0)])
 def test_a_slender_body_keeps_its_small_inertia(small: float, large: tuple[float, float]) -> None:
     """The moments are carried as ∫ r rᵀ dm, of which a rod's inertia about itself is a small sum."""
