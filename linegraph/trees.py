@@ -120,7 +120,7 @@ def _judged(derivation: Derivation, choices: dict[str, Any], chosen: bool) -> Ca
         "counted",
         folded=False,
         about=(),
-        only=("constraints", "equations"),
+        only=("constraints", "equations") if derivation.structure.closed else ("equations",),
         prologue=False,
     )
     programs = {p.name: p for p in module.programs if isinstance(p, Program)}
