@@ -48,7 +48,7 @@ def expanded(tree: KinematicTree) -> Expanded:
             rotation = joined(back, link.rotation)
             near = last[link.parent]
             link = replace(link, parent=near, rotation=rotation, at=back.out(link.at))
-        parts = link.joint.sequence() if _separable(link) else ()
+        parts = _parts(link)
         turn = Rotation()
         if parts:
             sequence, turn = _sequence(link, parts, len(links))
@@ -60,16 +60,18 @@ def expanded(tree: KinematicTree) -> Expanded:
     return Expanded(replace(tree, links=tuple(links)), tuple(last), tuple(turns))
 
 
-def _separable(link: Link) -> bool:
-    """Whether a joint's parts are better by themselves: their axes are numbers, and getting there is cheap.
+def _parts(link: Link) -> tuple[tuple[Joint, Rotation], ...]:
+    """A joint's parts, where they are better by themselves: with axes of numbers that are cheap to get to.
 
     A hinge turns anyway; what else is about an oblique axis would have to be turned to it and back.
     """
-    return not link.place.level and all(
+    parts = () if link.place.level else link.joint.sequence()
+    apart = all(
         all(isinstance(x, (int, float)) for row in axes.matrix() for x in row)
         and (joint.turns or all(isinstance(factor, Relabel) for factor in axes.factors))
-        for joint, axes in link.joint.sequence()
+        for joint, axes in parts
     )
+    return parts if apart else ()
 
 
 def _sequence(

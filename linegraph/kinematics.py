@@ -305,7 +305,7 @@ def mass_center(body: Body, resolve: Resolve) -> Vector:
 
 def compose(outer: Placement, inner: Placement, snap: float) -> Placement:
     """A frame given in an inner frame, seen from the outer one."""
-    at = vector.add(outer.at, _swept(rotation_of(outer.rotation).out(inner.at), inner.at))
+    at = vector.add(outer.at, swept(rotation_of(outer.rotation).out(inner.at), inner.at))
     return Placement(at, snapped(product(outer.rotation, inner.rotation), snap))
 
 
@@ -324,13 +324,13 @@ def moved(near: Placement, joint: Joint, value: Any, snap: float) -> Placement:
     return compose(there, inverse(alignment), snap)
 
 
-def _swept(turned: Vector, original: Vector) -> Vector:
-    """Drop rounding dust that a constant rotation leaves where an exact zero belongs."""
+def swept(turned: Vector, original: Vector, within: float = 4e-16) -> Vector:
+    """Drop the rounding dust, of this part of the original, that is left where an exact zero belongs."""
     if not all(isinstance(x, (int, float)) for x in (*turned, *original)):
         return turned
     scale = max(abs(x) for x in original)
-    swept = tuple(0 if abs(x) <= 4e-16 * scale else x for x in turned)
-    return swept  # type: ignore[return-value]
+    x, y, z = (0 if abs(c) <= within * scale else c for c in turned)
+    return (x, y, z)
 
 
 def resolved(a: Vector, resolve: Resolve) -> Vector:

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from linegraph import vector
 from linegraph.body import Placement
 from linegraph.expansion import expanded
-from linegraph.kinematics import KinematicTree, Link, carried, compose, parallel
+from linegraph.kinematics import KinematicTree, Link, carried, compose, parallel, swept
 from linegraph.rotation import (
     IDENTITY_MATRIX,
     Rotation,
@@ -199,7 +199,7 @@ def _best_angle(link: Link, children: Sequence[Link], weights: Sequence[int]) ->
 def _seen_turned(moments: Moments, turn: Matrix) -> Moments:
     """Moments in axes that are turned."""
     seen = carried(moments, rotation_of(vector.transpose(turn)), ZERO)
-    return seen._replace(first=_swept(seen.first, moments.first))
+    return seen._replace(first=swept(seen.first, moments.first, DUST))
 
 
 def _candidates(children: Sequence[Link]) -> list[float]:
@@ -228,7 +228,7 @@ def _cost(angle: float, children: Sequence[Link], weights: Sequence[int]) -> flo
 def _seen_from(link: Link, back: Matrix) -> Link:
     """A link whose parent's axes are turned: `back` takes old components to new ones."""
     m = product(back, link.rotation.matrix()) if back != IDENTITY_MATRIX else None
-    at = link.at if m is None else _swept(vector.times(back, link.at), link.at)
+    at = link.at if m is None else swept(vector.times(back, link.at), link.at, DUST)
     m = snapped(m if m is not None else link.rotation.matrix(), DUST)
     rotation = rotation_of(m)
     constant = all(x in (0, 1, -1) for row in m for x in row) or deviation(m) > DUST
@@ -287,15 +287,6 @@ def _angle_shifted(link: Link, angle: float) -> Link:
     return replace(link, place=moved)
 
 
-def _swept(turned: Vector, original: Vector) -> Vector:
-    """Drop rounding dust where an exact zero belongs."""
-    if not _known((*turned, *original)):
-        return turned
-    scale = max(abs(x) for x in original)
-    x, y, z = (0 if abs(c) <= DUST * scale else c for c in turned)
-    return (x, y, z)
-
-
 # sliding
 
 
@@ -346,11 +337,11 @@ def _best_shift(
 
 def _moved_origin(link: Link, shift: Vector) -> Link:
     """A link with its origin shifted, both on its near and on its far side."""
-    at = _swept(add(link.at, link.rotation.out(shift)), link.at)
+    at = swept(add(link.at, link.rotation.out(shift)), link.at, DUST)
     moments = carried(link.moments, Rotation(), vector.negate(shift))
     return replace(link, at=at, moments=moments)
 
 
 def _seen_shifted(link: Link, shift: Vector) -> Link:
     """A link whose parent's origin is shifted."""
-    return replace(link, at=_swept(subtract(link.at, shift), link.at))
+    return replace(link, at=swept(subtract(link.at, shift), link.at, DUST))
