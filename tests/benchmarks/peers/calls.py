@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 FUNCTIONS = ("equations", "inverse_dynamics", "forward_dynamics")
+FIVE = ("mass_matrix", "bias", *FUNCTIONS)
+"""What both generators write."""
 STATES = 16
 TOLERANCE = 1e-9
 LONG = 2.0

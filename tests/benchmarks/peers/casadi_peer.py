@@ -12,7 +12,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import casadi
-from calls import FUNCTIONS, Call, Layout, compile_seconds, compiled, folder, spent
+from calls import FIVE, Call, Layout, compile_seconds, compiled, folder, spent
 from environment import HERE, casadi_generator, run
 
 if TYPE_CHECKING:
@@ -28,9 +28,7 @@ FREE = (
     casadi.OP_OUTPUT,
 )
 """Operation codes that cost nothing; all others are an arithmetic operation, a sine, a cosine or a root."""
-NAMES = ("", "_dense")
 CONVENTIONS = {"local": "", "world": "_world"}
-WRITTEN = ("mass_matrix", "bias", "equations", "inverse_dynamics", "forward_dynamics")
 
 
 @dataclass(frozen=True)
@@ -66,7 +64,7 @@ def generated(robot: Robot) -> Generated:
 
 
 def _variants() -> list[str]:
-    return [*WRITTEN, "equations_dense"]
+    return [*FIVE, "equations_dense"]
 
 
 def calls(robot: Robot, joints: tuple[str, ...], function: str, runs: int) -> list[Call]:
@@ -98,7 +96,7 @@ def counts(robot: Robot) -> dict[str, dict[str, int]]:
     made = generated(robot)
     return {
         name: {word: made.operations(f"{name}{mark}") for word, mark in CONVENTIONS.items()}
-        for name in WRITTEN
+        for name in FIVE
     }
 
 
@@ -119,11 +117,8 @@ def whole(robot: Robot, runs: int) -> dict[str, float]:
     """Bytes and compile time of the five functions."""
     made = generated(robot)
     mark = min(CONVENTIONS.values(), key=lambda mark: made.operations(f"equations{mark}"))
-    paths = [made.folder / f"{name}{mark}.c" for name in WRITTEN]
+    paths = [made.folder / f"{name}{mark}.c" for name in FIVE]
     return {
         "bytes": sum(path.stat().st_size for path in paths),
         "compile_seconds": sum(compile_seconds(path, runs) for path in paths),
     }
-
-
-assert set(FUNCTIONS) <= set(WRITTEN)

@@ -9,7 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import linegraph_peer
-from calls import Call, Sizes, count_instructions, folder, time_calls, verify, verify_batches
+from calls import FIVE, Call, Sizes, count_instructions, folder, time_calls, verify, verify_batches
 from environment import described, say
 from linegraph_peer import Emitted
 from robots import Robot, robot
@@ -18,9 +18,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 Figures = dict[str, Any]
-
-FIVE = ("mass_matrix", "bias", "equations", "inverse_dynamics", "forward_dynamics")
-"""What both generators write."""
 
 
 @dataclass(frozen=True)
