@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from linegraph.program import Argument, Module, Result, Routine
 
 NAMES = ("mass_matrix", "bias", "equations", "inverse_dynamics", "forward_dynamics")
-"""The functions that are called for many states."""
+"""The functions that users call for many states; those that may fail are named in the header as left out."""
 
 
 @dataclass(frozen=True)

@@ -88,7 +88,7 @@ def _needs(
         "lanes_sincos": f"{name}_lanes_sincos",
     }
     found = {key for key, mark in marks.items() if re.search(rf"\b{mark}\(", text)}
-    return found | {"part" for _ in range(f"{name.upper()}_PART " in heads)}
+    return found | ({"part"} if f"{name.upper()}_PART " in heads else set())
 
 
 def _remark(quantity: Quantity) -> str:

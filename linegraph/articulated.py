@@ -17,7 +17,8 @@ from linegraph import vector
 from linegraph.algebra import set_label
 from linegraph.factorization import Solution
 from linegraph.orthogonality import Arm, applied_to, gathered
-from linegraph.spins import inertia_forces
+from linegraph.rotation import square
+from linegraph.spins import inertia_forces, together
 from linegraph.vector import ZERO, Matrix, Scalar, Vector, add, cross, dot, subtract
 
 if TYPE_CHECKING:
@@ -27,9 +28,7 @@ if TYPE_CHECKING:
     from linegraph.joints import Moments
     from linegraph.kinematics import KinematicTree
     from linegraph.rotation import Inertia, Rotation
-
-Wrench = tuple[Vector, Vector]
-"""(force, torque about the origin)"""
+    from linegraph.spins import Wrench
 
 
 class Articulated(NamedTuple):
@@ -60,7 +59,7 @@ class Articulated(NamedTuple):
 
     def free_along(self, turn: int | None, shift: int | None) -> Articulated:
         """With zeros where a coordinate axis is free to turn about, or to shift along."""
-        a, b, c = _square(self.a), self.b, _square(self.c)
+        a, b, c = square(self.a), self.b, square(self.c)
         if turn is not None:
             a, b = _cleared(a, turn, rows=True, columns=True), _cleared(b, turn, rows=True)
         if shift is not None:
@@ -75,9 +74,9 @@ class Articulated(NamedTuple):
 
     def shifted(self, at: Vector) -> Articulated:
         """Seen from an outer origin."""
-        outer = _plus(self.b, _crossed(at, _square(self.c)))
+        outer = _plus(self.b, _crossed(at, square(self.c)))
         # A' = A + [r] B^T - B' [r], the last by rows: (x B'[r])_i = B'_i x r
-        moved = _plus(_square(self.a), _crossed(at, vector.transpose(self.b)))
+        moved = _plus(square(self.a), _crossed(at, vector.transpose(self.b)))
         full = tuple(subtract(moved[i], cross(outer[i], at)) for i in range(3))
         return Articulated(_upper(full), outer, self.c)  # type: ignore[arg-type]
 
@@ -140,8 +139,7 @@ def forward_dynamics(
         if link.parent >= 0:
             p = link.parent
             maps[p] = maps[p].joined(body.turned(arm.rotation).shifted(arm.at))
-            wrench = gathered(arm, *wrench)
-            wrenches[p] = (add(wrenches[p][0], wrench[0]), add(wrenches[p][1], wrench[1]))
+            wrenches[p] = together(wrenches[p], gathered(arm, *wrench))
     return Solution(_accelerations(tree, algebra, crossed, freed), pivots)
 
 
@@ -202,11 +200,6 @@ def _accelerations(
             incoming = add(incoming, vector.scale(result[k], arm.motion.linear[a]))
         reached.append((inner, incoming))
     return result
-
-
-def _square(j: Inertia) -> Matrix:
-    xx, xy, xz, yy, yz, zz = j
-    return ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
 
 
 def _cleared(m: Matrix, k: int, *, rows: bool = False, columns: bool = False) -> Matrix:

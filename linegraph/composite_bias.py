@@ -19,6 +19,7 @@ from linegraph.algebra import set_label
 from linegraph.joints import Moments
 from linegraph.mass_matrix import composites
 from linegraph.orthogonality import applied_to, projection
+from linegraph.rotation import square
 from linegraph.spins import (
     Crossing,
     Spin,
@@ -28,8 +29,9 @@ from linegraph.spins import (
     resting,
     seen_near,
     spins,
+    together,
 )
-from linegraph.vector import Vector, add, cross
+from linegraph.vector import add, cross
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -40,9 +42,8 @@ if TYPE_CHECKING:
     from linegraph.loads import Applied
     from linegraph.orthogonality import Arm
     from linegraph.rotation import Inertia, Rotation
-    from linegraph.vector import Matrix, Scalar
-
-Wrench = tuple[Vector, Vector]
+    from linegraph.spins import Wrench
+    from linegraph.vector import Matrix, Scalar, Vector
 
 
 def bias_beside_mass(
@@ -52,9 +53,7 @@ def bias_beside_mass(
     carried = composites(tree, algebra, list(crossed))
     motions = spins(tree, algebra, crossed)
     total: list[Scalar] = [-effort for effort in acting.efforts]
-    beyond: list[Wrench] = [
-        (vector.negate(force), vector.negate(torque)) for force, torque in acting.wrenches
-    ]
+    beyond = [(vector.negate(force), vector.negate(torque)) for force, torque in acting.wrenches]
     for i in reversed(range(len(tree.links))):
         link, arm = tree.links[i], crossed[i]
         set_label(algebra, f"forces, {link.caption}")
@@ -63,13 +62,13 @@ def bias_beside_mass(
         whole = d_alembert(here.carried, here.field)
         own = _added(here.carried, crossed_with(arm, here.motion, here.field.velocity))
         for a, freedom in enumerate(link.velocities):
-            entry = projection(here.motion, a, *_sum(whole, own))
+            entry = projection(here.motion, a, *together(whole, own))
             entry = entry + projection(arm.motion, a, *beyond[i])
             total[freedom.index] = total[freedom.index] + freedom.ratio * entry
         if link.parent >= 0:
-            force, torque = here.seen_near(beyond[i], own)
+            force, torque = here.passed_on(beyond[i], own)
             passed = (force, add(torque, cross(arm.at, force)))
-            beyond[link.parent] = _sum(beyond[link.parent], passed)
+            beyond[link.parent] = together(beyond[link.parent], passed)
     return total
 
 
@@ -90,12 +89,12 @@ class _Joint(NamedTuple):
     rotation: Rotation
     near: bool
 
-    def seen_near(self, far: Wrench, own: Wrench) -> Wrench:
+    def passed_on(self, far: Wrench, own: Wrench) -> Wrench:
         """The sum of a wrench in far axes and one in the joint's, in near axes."""
         out = self.rotation.out
         if self.near:
-            return _sum((out(far[0]), out(far[1])), own)
-        force, torque = _sum(far, own)
+            return together((out(far[0]), out(far[1])), own)
+        force, torque = together(far, own)
         return out(force), out(torque)
 
 
@@ -125,10 +124,6 @@ def _added(composite: Moments, here: Crossing) -> Wrench:
     return add(force, vector.times(field, first)), add(torque, gyroscopic)
 
 
-def _sum(a: Wrench, b: Wrench) -> Wrench:
-    return add(a[0], b[0]), add(a[1], b[1])
-
-
 def _turning(w: Vector, sums: Vector) -> Matrix:
     """``[σ x][w x] = w σ^T - (w . σ) 1``."""
     x, y, z = (w[k] * sums[k] for k in range(3))
@@ -141,6 +136,5 @@ def _turning(w: Vector, sums: Vector) -> Matrix:
 
 def _axial(field: Matrix, second: Inertia) -> Vector:
     """The torque ``∫ r x (A r) dm``: the axial vector of A S."""
-    xx, xy, xz, yy, yz, zz = second
-    rows = [vector.times(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)), row) for row in field]
+    rows = [vector.times(square(second), row) for row in field]
     return (rows[2][1] - rows[1][2], rows[0][2] - rows[2][0], rows[1][0] - rows[0][1])

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from linegraph import vector
 from linegraph.errors import ModelError
 from linegraph.orthogonality import Arm, arms
-from linegraph.rotation import IDENTITY_MATRIX, Full, Inertia, product
+from linegraph.rotation import IDENTITY_MATRIX, Full, Inertia, product, square
 from linegraph.vector import ZERO, Matrix, Scalar, Vector, add, cross, dot, scale, subtract
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ def resolved(tree: KinematicTree, crossed: list[Arm]) -> list[Resolved]:
         relative = out(vector.combine(arm.rates, arm.motion.angular))
         w = add(cross(omega, relative), out(angular_remainder(arm)))
         mass, center, inertia = _central(link)
-        tensor = Full(_square(Full(rotation).congruence(inertia)))
+        tensor = Full(square(Full(rotation).congruence(inertia)))
         bodies.append(
             Resolved(rotation, out(center), mass, tensor, add(omega, relative), add(epsilon, w))
         )
@@ -277,11 +277,6 @@ def _euler(body: Resolved) -> Vector:
 def _quadratic(a: list[Vector], b: list[Vector], bodies: list[Resolved]) -> Scalar:
     """One entry of (S H) I (S H)^T."""
     return sum(dot(x, body.inertia.out(y)) for x, y, body in zip(a, b, bodies, strict=True))
-
-
-def _square(j: Inertia) -> Matrix:
-    xx, xy, xz, yy, yz, zz = j
-    return ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
 
 
 def _sum(vectors: Iterable[Vector]) -> Vector:

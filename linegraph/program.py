@@ -97,7 +97,7 @@ class Program:
     @property
     def operations(self) -> int:
         """Arithmetic operations and function calls executed: every node once; a change of sign is free."""
-        return sum(node.op not in (SYMBOL, NEG) for node in live_nodes(self))
+        return operations_of(self.results, self.checks)
 
 
 @dataclass(frozen=True)
@@ -199,6 +199,11 @@ def assemble(
 def live_nodes(program: Program) -> list[Node]:
     """All nodes that a program's results and checks need, each after its operands."""
     return _live(_roots(program.results, program.checks))
+
+
+def operations_of(results: tuple[Result, ...], checks: tuple[Check, ...] = ()) -> int:
+    """Operations that results and checks take together; a change of sign is free."""
+    return sum(node.op not in (SYMBOL, NEG) for node in _live(_roots(results, checks)))
 
 
 def reads(argument: str, results: tuple[Result, ...]) -> bool:

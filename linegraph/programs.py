@@ -23,9 +23,7 @@ from linegraph.program import (
 from linegraph.prologue import COUNT, with_prologue
 from linegraph.regularity import SINGULAR, is_solid, sample_tree
 from linegraph.shared import ARGUMENTS, Functions
-from linegraph.united import (
-    united_inverse_dynamics,
-)
+from linegraph.united import united_inverse_dynamics
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -132,13 +130,8 @@ def _bias(f: Functions) -> Program:
 
 
 def _equations(f: Functions) -> Program:
-    """The bias from composites or from single links, whichever takes fewer operations beside M."""
     about = "Mass matrix M(q) and bias h(q, v) at once, sharing work."
-    either = (
-        f.program("equations", about, ("q", "v"), (f.mass_matrix, bias))
-        for bias in dict.fromkeys((f.bias_beside_mass, f.bias))
-    )
-    return min(either, key=lambda program: program.operations)
+    return f.program("equations", about, ("q", "v"), (f.mass_matrix, f.bias_beside_mass))
 
 
 def _inverse_dynamics(f: Functions) -> Program:
@@ -166,8 +159,7 @@ def _forward_dynamics(f: Functions) -> Program:
 
 def _articulated(f: Functions) -> Program:
     """Links by articulated inertias, networks beside them by their own part of the mass matrix."""
-    carried = orthogonality.generalised_forces(f.short, f.dag, f.crossed, f.rehoused(f.carried))
-    total = [effort + load for effort, load in zip(f.driving, carried, strict=True)]
+    total = [effort + load for effort, load in zip(f.driving, f.along(f.carried), strict=True)]
     solution = forward_dynamics(f.short, f.dag, f.crossed, total, f.armatures or {})
     first, size = f.tree.layout.mechanical, len(f.v) - f.tree.layout.mechanical
     rows: list[list[Scalar]] = [[0] * size for _ in range(size)]

@@ -297,6 +297,12 @@ def deviation(m: Matrix) -> float:
     return float(max(products))
 
 
+def square(j: Inertia) -> Matrix:
+    """A symmetric tensor as a matrix."""
+    xx, xy, xz, yy, yz, zz = j
+    return ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
+
+
 def product(a: Matrix, b: Matrix) -> Matrix:
     """``A B``."""
     columns = transpose(b)

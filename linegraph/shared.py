@@ -14,7 +14,16 @@ from linegraph.expression import Dag
 from linegraph.inverse_scheme import InverseScheme
 from linegraph.loads import Applied, applied, efforts
 from linegraph.parameters import valued
-from linegraph.program import Argument, Call, Check, Program, Result, assemble, reads
+from linegraph.program import (
+    Argument,
+    Call,
+    Check,
+    Program,
+    Result,
+    assemble,
+    operations_of,
+    reads,
+)
 from linegraph.scope import relations
 from linegraph.united import exchange_at, network_entries, united_mass_matrix
 from linegraph.working_frames import shortened
@@ -146,15 +155,14 @@ class Functions:
         """What acts beside that: efforts and what inputs drive."""
         if self.affine:
             return self.efforts
-        active = self._applied(driven=True, network=NONE)
-        forces = orthogonality.generalised_forces(self.tree, self.dag, self.arms, active)
+        forces = self.along(self._applied(driven=True, network=NONE))
         return efforts(self.tree, self.dag, self.chords, forces)
 
     @cached_property
     def held(self) -> list[Scalar]:
         """What v̇ = 0 takes of `carried`: h, where Q can be added to it."""
         if self.affine:
-            return list(self.bias.entries)
+            return list(self.bias_beside_mass.entries)
         return orthogonality.inverse_dynamics(
             self.short, self.dag, self.crossed, applied=self.rehoused(self.carried)
         )
@@ -168,6 +176,12 @@ class Functions:
     def crossed(self) -> list[orthogonality.Arm]:
         """The same in the shortest frames: for M and h."""
         return orthogonality.arms(self.short, self.dag, self.q, self.v)
+
+    def along(self, acting: Applied) -> list[Scalar]:
+        """What forces do along v."""
+        return orthogonality.generalised_forces(
+            self.short, self.dag, self.crossed, self.rehoused(acting)
+        )
 
     def rehoused(self, acting: Applied) -> Applied:
         """Forces given in the frames of the walk, in the shortest ones."""
@@ -253,10 +267,7 @@ class Functions:
     @cached_property
     def efforts(self) -> list[Scalar]:
         """Q: joint efforts at their velocities, and what driven elements do."""
-        active = orthogonality.generalised_forces(
-            self.short, self.dag, self.crossed, self.rehoused(self.active)
-        )
-        return efforts(self.tree, self.dag, self.chords, active)
+        return efforts(self.tree, self.dag, self.chords, self.along(self.active))
 
     @cached_property
     def bias(self) -> Result:
@@ -269,11 +280,13 @@ class Functions:
 
     @cached_property
     def bias_beside_mass(self) -> Result:
-        """The bias h as a result, where M is wanted with it."""
+        """The same where M is wanted with it: from composites or from single links, by count."""
         if self.short.levelled:
             return self.bias
         acting = self.rehoused(self.passive)
-        return _bias_result(bias_beside_mass(self.short, self.dag, self.crossed, acting))
+        entries = bias_beside_mass(self.short, self.dag, self.crossed, acting)
+        either = (_bias_result(entries), self.bias)
+        return min(either, key=lambda bias: operations_of((self.mass_matrix, bias)))
 
 
 def _bias_result(entries: list[Scalar]) -> Result:

@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from linegraph.rotation import Inertia
 
 
+Wrench = tuple[Vector, Vector]
+"""Force, and torque about a link's origin."""
+
+
 class Spin(NamedTuple):
     """How a link moves: angular velocity and acceleration, and the acceleration of its origin."""
 
@@ -129,7 +133,7 @@ def inertia_forces(
     algebra: Algebra,
     crossed: Sequence[Arm],
     acceleration: Iterable[Scalar] | None = None,
-) -> list[tuple[Vector, Vector]]:
+) -> list[Wrench]:
     """Force and torque that each link's own motion asks for; with no v̇ given, at v̇ = 0."""
     found = []
     motions = spins(tree, algebra, crossed, acceleration)
@@ -139,7 +143,7 @@ def inertia_forces(
     return found
 
 
-def d_alembert(moments: Moments, spin: Spin) -> tuple[Vector, Vector]:
+def d_alembert(moments: Moments, spin: Spin) -> Wrench:
     """Force and torque that the motion of a link asks for, about its origin.
 
     f = m a + U b and n = b x a + the axial vector of U S, with b and S the first and second moments; it is
@@ -156,6 +160,11 @@ def d_alembert(moments: Moments, spin: Spin) -> tuple[Vector, Vector]:
         _twisted(sxx, syy, xy, z) + (yy - xx) * sxy + (yz - x) * sxz - (xz + y) * syz,
     )
     return force, add(torque, cross(first, spin.linear))
+
+
+def together(a: Wrench, b: Wrench) -> Wrench:
+    """The sum of two wrenches about one point."""
+    return add(a[0], b[0]), add(a[1], b[1])
 
 
 def _twisted(a: Scalar, b: Scalar, both: Scalar, turn: Scalar) -> Scalar:

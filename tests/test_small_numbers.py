@@ -6,11 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+import sympy
 from compiled import Compiled
 from emitted import load
 
 import linegraph as lg
 from linegraph.emission import render
+from linegraph.expression import Dag
+from linegraph.joints.base import second_moments
 from linegraph.rotation import from_rpy, snapped
 
 if TYPE_CHECKING:
@@ -31,6 +34,16 @@ def test_a_slender_body_keeps_its_small_inertia(small: float, large: tuple[float
         direction = tuple(float(k == axis) for k in range(3))
         model.revolute("hinge", between=("ground", body), axis=direction)
         assert lg.derive(model).numeric().mass_matrix([0.3]) == [[inertia[axis]]]
+
+
+def test_equal_symbols_leave_each_other_out() -> None:
+    """Of (a + b) - b no digit of a small a would be left."""
+    a, b = sympy.symbols("a b")
+    dag = Dag()
+    small, large = dag.symbol("p", "small"), dag.symbol("p", "large")
+    assert second_moments((b, 0, 0, b, 0, a)) == (a / 2, 0, 0, a / 2, 0, b - a / 2)
+    found = second_moments((large, 0, 0, small, 0, large))
+    assert found[0] is found[5] is small / 2
 
 
 def test_an_inertia_that_becomes_zero_is_reported(tmp_path: Path) -> None:

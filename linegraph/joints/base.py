@@ -90,10 +90,17 @@ def second_moments(inertia: Inertia) -> Inertia:
     Of a planar body, whose J has no more than zz, S is what gives that zz.
     """
     xx, xy, xz, yy, yz, zz = inertia
-    numbers = all(isinstance(x, (int, float)) for x in (xx, yy, zz))
-    x, y, z = ((yy, zz, -xx), (xx, zz, -yy), (xx, yy, -zz))
-    sums = [math.fsum(a) if numbers else a[0] + a[1] + a[2] for a in (x, y, z)]
-    return (sums[0] / 2, -xy, -xz, sums[1] / 2, -yz, sums[2] / 2)
+    x, y, z = _less(yy, zz, xx), _less(zz, xx, yy), _less(xx, yy, zz)
+    return (x / 2, -xy, -xz, y / 2, -yz, z / 2)
+
+
+def _less(a: Scalar, b: Scalar, c: Scalar) -> Scalar:
+    """``a + b - c``, from which two that are the same are left out: they would take digits of the third."""
+    if all(isinstance(x, (int, float)) for x in (a, b, c)):
+        return math.fsum((a, b, -c))
+    if c in (a, b):
+        return b if c == a else a
+    return a + b - c
 
 
 class Along(NamedTuple):
