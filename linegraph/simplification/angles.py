@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 EQUAL = 1e-12
 """Coefficients that are floats are equal if they differ by less than this, relatively."""
 
-SEARCH = 50_000
+SEARCH = 10_000
 """How much work on terms the search for other angles may take."""
 
 
@@ -102,7 +102,11 @@ def _waves(ring: Ring, terms: Terms) -> list[Harmonic]:
 
 def _pair(ring: Ring, harmonic: Harmonic) -> tuple[int, int]:
     """The terms of an angle's sine and cosine."""
-    return unit(ring.generator(SIN, harmonic)), unit(ring.generator(COS, harmonic))
+    found = ring.waves.get(harmonic)
+    if found is None:
+        found = unit(ring.generator(SIN, harmonic)), unit(ring.generator(COS, harmonic))
+        ring.waves[harmonic] = found
+    return found
 
 
 def _signed(ring: Ring, kind: str, harmonic: Harmonic) -> tuple[Number, int]:

@@ -68,6 +68,7 @@ class Ring:
     Attributes:
         generators: in order of first use.
         angles: what each angle is, as a polynomial.
+        waves: the terms that are sine and cosine of an angle.
         work: products of two terms formed so far.
         inexact: whether a float has come in that is no whole number.
 
@@ -85,6 +86,7 @@ class Ring:
         self.inexact = False
         self.generators: list[Generator] = []
         self.angles: list[Frozen] = []
+        self.waves: dict[Harmonic, tuple[int, int]] = {}
         self._places: dict[Generator, int] = {}
         self._bias = 0
         self._high = 0
