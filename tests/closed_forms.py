@@ -90,29 +90,14 @@ def _power(e: Expr, base: Any, exponent: Any) -> Any:
     return mpmath.power(base, int(e.exp) if e.exp.is_Integer else exponent)
 
 
+ALIKE = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log")
 FUNCTIONS: dict[str, Callable[..., Any]] = {
-    **{
-        name: getattr(mpmath, name)
-        for name in [
-            "sin",
-            "cos",
-            "tan",
-            "asin",
-            "acos",
-            "atan",
-            "atan2",
-            "sinh",
-            "cosh",
-            "tanh",
-            "exp",
-            "log",
-            "sign",
-        ]
-    },
+    **{name: getattr(mpmath, name) for name in (*ALIKE, "sign")},
     "Abs": mpmath.fabs,
     "Min": min,
     "Max": max,
 }
+"""sympy's functions in mpmath."""
 
 
 # ---- exact zeros

@@ -178,8 +178,8 @@ def sympys_double_pendulum(q: Any, speeds: Any) -> tuple[Any, Any]:
     tip.v2pt_theory(O, N, A)
     C2.v2pt_theory(tip, N, B)
     rods = [
-        mechanics.RigidBody(f"b{k}", C, F, m, (mechanics.inertia(F, 0, I, 0), C))
-        for k, (C, F, m, I) in enumerate(((C1, A, m1, I1), (C2, B, m2, I2)))
+        mechanics.RigidBody(f"b{k}", C, F, m, (mechanics.inertia(F, 0, J, 0), C))
+        for k, (C, F, m, J) in enumerate(((C1, A, m1, I1), (C2, B, m2, I2)))
     ]
     loads = [(rod.masscenter, -rod.mass * g * N.z) for rod in rods]
     rates = [s - x.diff() for s, x in zip(speeds, q, strict=True)]
