@@ -380,7 +380,7 @@ def test_a_double_pendulum_over_sympy() -> None:
     symbolic = lg.derive(model).symbolic
     names = "m l g a b a_dot b_dot"
     mass, r, g, a, b, da, db = sympy.symbols(names)
-    star = printed_matrices(symbolic.tree, symbolic.algebra, list(symbolic.q), list(symbolic.v))
+    star = symbolic.printed_matrices
     c, s, j = sympy.cos(b), sympy.sin(b), mass * r**2
     inertia = sympy.Matrix([[j * (3 + 2 * c), j * (1 + c)], [j * (1 + c), j]])
     low = -mass * g * r * sympy.sin(a + b)

@@ -175,7 +175,8 @@ class Simplifier:
     def _agree(self, found: list[Any], derived: list[Any], scales: list[Any]) -> bool:
         most = INEXACT if self._ring.inexact else EXACT
         return all(
-            abs(a - b) <= most * (scale + abs(b))
+            # the symbols are of the size of 1, and so are terms that cancel altogether
+            abs(a - b) <= most * (1 + scale + abs(b))
             for a, b, scale in zip(found, derived, scales, strict=True)
         )
 

@@ -84,7 +84,10 @@ class Writer:
         self._known: dict[int, Expr] = {}
 
     def written(self, terms: Terms) -> Expr:
-        """Collected and factored."""
+        """Collected and factored, what all terms share before all."""
+        common, terms = (
+            self.ring.primitive(terms, clear=False) if len(terms) > 1 else ({0: 1}, terms)
+        )
         coefficients: dict[int, Terms] = {}
         for term, k in sorted(terms.items()):
             moving = sum(unit(p, e) for p, e in self.ring.exponents(term) if self.moves(p))
