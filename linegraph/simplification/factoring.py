@@ -84,10 +84,9 @@ class Writer:
         self._known: dict[int, Expr] = {}
 
     def written(self, terms: Terms) -> Expr:
-        """Collected and factored, what all terms share before all."""
-        common, terms = (
-            self.ring.primitive(terms, clear=False) if len(terms) > 1 else ({0: 1}, terms)
-        )
+        """Collected and factored, the parameters that all terms share before all."""
+        outside = self._shared_parameters(terms)
+        terms = {term - outside: k for term, k in terms.items()}
         coefficients: dict[int, Terms] = {}
         for term, k in sorted(terms.items()):
             moving = sum(unit(p, e) for p, e in self.ring.exponents(term) if self.moves(p))
@@ -100,7 +99,15 @@ class Writer:
             first, members = shared.setdefault(key, (coefficient, {}))
             own = first[min(first)]
             members[moving] = plain(coefficient[min(coefficient)] * reciprocal(own))
-        return sympy.Add(*(self._collected(*pair) for pair in shared.values()))
+        whole = sympy.Add(*(self._collected(*pair) for pair in shared.values()))
+        return self.expanded({outside: 1}) * whole
+
+    def _shared_parameters(self, terms: Terms) -> int:
+        """What of parameters stands in every term."""
+        if len(terms) < 2:
+            return 0
+        (common,) = self.ring.primitive(terms, clear=False)[0]
+        return sum(unit(p, e) for p, e in self.ring.exponents(common) if self.constant(p))
 
     def _collected(self, coefficient: Terms, moving: Terms) -> Expr:
         """One coefficient with all that it stands with."""
