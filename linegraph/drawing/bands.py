@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-ORDERING_SWEEPS, PLACING_SWEEPS = 16, 40
+ORDERING_SWEEPS, PLACING_SWEEPS = 16, 200
 Thing = TypeVar("Thing", bound=Hashable)
 
 GAP = 8
@@ -181,13 +181,21 @@ class Bands:
             for k, distance in zip(row, self._distances(row), strict=True):
                 x += distance
                 self.cells[k].x = x
+        before: list[int] = []
         for sweep in range(PLACING_SWEEPS):
             upward = sweep % 2 == 0
             rows = self.rows if upward else self.rows[::-1]
             for row in rows:
                 self._settle(row, sweep < 2, upward)
-        for row in [*self.rows, *self.rows[::-1]]:
-            self._straighten(row)
+            if upward:
+                now = [cell.x for cell in self.cells]
+                if now == before:
+                    break
+                before = now
+        for row in self.rows:
+            self._straighten(row, upward=True)
+        for row in self.rows[::-1]:
+            self._straighten(row, upward=False)
         first = min((c.x - c.left * FINE for c in self.cells), default=0)
         for cell in self.cells:
             cell.x = (cell.x - first + FINE // 2) // FINE
@@ -219,11 +227,11 @@ class Bands:
                 self.cells[row[at]].x = _mean(block) + shifts[at]
                 at += 1
 
-    def _straighten(self, row: list[int]) -> None:
-        """Bring things exactly under or over what they are firmly linked to; what is not makes room."""
+    def _straighten(self, row: list[int], *, upward: bool) -> None:
+        """Bring things exactly over (or under) what they are firmly linked to; what is not makes room."""
         for place, k in enumerate(row):
-            links = [(x, x.low, x.low_port, x.high_port) for x in self.below[k]]
-            links += [(x, x.high, x.high_port, x.low_port) for x in self.above[k]]
+            links = [(x, x.low, x.low_port, x.high_port) for x in self.below[k] if upward]
+            links += [(x, x.high, x.high_port, x.low_port) for x in self.above[k] if not upward]
             wishes = [
                 (-x.weight, abs(wish - self.cells[k].x), wish)
                 for x, far, far_port, port in links

@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linegraph.drawing.dot import dot_text
-from linegraph.drawing.pictures import graph_scene
+from linegraph.drawing.mechanism import mechanism_scene
+from linegraph.drawing.pictures import graph_scene, whole_scene
 from linegraph.drawing.png import png_bytes
 from linegraph.drawing.svg import svg_text
 from linegraph.errors import LinegraphError
@@ -51,7 +52,7 @@ def picture(
         LinegraphError: it cannot be drawn, or what is asked for contradicts itself.
     """
     require_ending(output)
-    ending = Path(output or ".svg").suffix.lower() or ".svg"
+    ending = ".svg" if output is None else Path(output).suffix.lower()
     if what == "graph" and hold:
         raise LinegraphError("--set places the mechanism: add --what sketch or --what both")
     if what == "sketch" and subspaces:
@@ -60,7 +61,12 @@ def picture(
         if what != "graph":
             raise LinegraphError("a .dot file holds the graph alone: write the sketch as .svg or .png")
         return dot_text(derivation, subspaces or None)
-    scene = _scene(derivation, what, subspaces, hold)
+    if what == "sketch":
+        scene = mechanism_scene(derivation, hold=hold)
+    elif what == "both":
+        scene = whole_scene(derivation, subspaces or None, hold=hold)
+    else:
+        scene = graph_scene(derivation, subspaces or None)
     return png_bytes(scene) if ending == ".png" else svg_text(scene)
 
 

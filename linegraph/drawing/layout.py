@@ -132,12 +132,15 @@ def _set_layers(
     found: Plan, projection: Projection, outer: list[Edge], branches: frozenset[str]
 ) -> None:
     """How many branches each body or vertex is from ground; by any edge where no branch leads."""
-    layer = {GROUND: 0} | {edge.head: 0 for edge in found.arms}
+    layer = dict.fromkeys([GROUND] * (GROUND in projection.vertices), 0)
+    layer |= {edge.head: 0 for edge in found.arms}
     tree = [edge for edge in outer if edge.name in branches]
     _spread(found, layer, tree)
     _spread(found, layer, outer)
     for vertex in projection.vertices:
-        layer.setdefault(found.node[vertex], 1)
+        if found.node[vertex] not in layer:
+            layer[found.node[vertex]] = 1
+            _spread(found, layer, outer)
     order = _visited(found, [*layer], [*tree, *outer])
     found.layer = {name: layer[name] for name in order}
 

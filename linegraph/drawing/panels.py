@@ -79,6 +79,8 @@ class Panel:
 
     def _rail(self) -> list[Item]:
         """Ground: a thick line, hatched below, with its frames on it."""
+        if GROUND not in self.plan.layer:
+            return []
         (left, y), (right, _) = self._at(-2, 0), self._at(self.plan.width + 4, 0)
         hatch = [
             line((x, y + 2), (x - 7, y + 9), pen=Pen(INK, 0.8))

@@ -7,14 +7,17 @@ from typing import TYPE_CHECKING
 from linegraph.checks import nearest
 from linegraph.domains import SPATIAL
 from linegraph.drawing.legend import body_entries, edge_entries, legend
+from linegraph.drawing.letters import short, width
 from linegraph.drawing.looks import kinds_of
 from linegraph.drawing.panels import Panel
-from linegraph.drawing.scene import Item, Scene, moved
+from linegraph.drawing.mechanism import Sketch
+from linegraph.drawing.poses import poses
+from linegraph.drawing.scene import GREY, SMALL, Item, Scene, Text, moved
 from linegraph.drawing.svg import svg_text
 from linegraph.errors import ModelError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from linegraph.derive import Derivation
     from linegraph.graph import Projection
@@ -23,6 +26,8 @@ if TYPE_CHECKING:
 MARGIN, APART, LEAST_LEGEND = 16, 28, 420
 WIDEST = 1100
 """Panels stand side by side up to this width."""
+
+LONGEST_REMARK = 120
 
 
 def graph_scene(derivation: Derivation, subspace: str | Iterable[str] | None = None) -> Scene:
@@ -35,12 +40,46 @@ def graph_scene(derivation: Derivation, subspace: str | Iterable[str] | None = N
     Raises:
         ModelError: there is no such subspace.
     """
+    return composed(f"Linear graph of {derivation.model.name}", _panels(derivation, subspace))
+
+
+def whole_scene(
+    derivation: Derivation,
+    subspace: str | Iterable[str] | None = None,
+    q: Sequence[float] | None = None,
+    hold: Mapping[str, float] | None = None,
+) -> Scene:
+    """The graph, and beside it the mechanism; where that cannot be sketched, a remark says why.
+
+    Args:
+        derivation: a derived model.
+        subspace: the subspaces to draw, by name; all if left out.
+        q: the coordinates of the sketch, as of `mechanism_scene`.
+        hold: coordinates of the sketch that keep the value given, by name.
+
+    Raises:
+        ModelError: there is no such subspace.
+    """
+    panels = _panels(derivation, subspace)
+    title = f"Linear graph and mechanism of {derivation.model.name}"
+    try:
+        found = poses(derivation, q, hold)
+    except ModelError as error:
+        if hold or q is not None:
+            raise
+        remark = f"no sketch: {error.thing} {error.problem}" * bool(derivation.model.bodies)
+        return composed(title, panels, remark=remark)
+    sketch = Sketch(found)
+    return composed(title, panels, sketch)
+
+
+def _panels(derivation: Derivation, subspace: str | Iterable[str] | None) -> list[Panel]:
     kinds = kinds_of(derivation.model)
     panels = []
     for names, topology in chosen_panels(derivation, subspace):
         branches = frozenset(edge.name for edge in topology.branches)
         panels.append(Panel(" and ".join(names), topology.projection, branches, kinds))
-    return composed(f"Linear graph of {derivation.model.name}", panels)
+    return panels
 
 
 def graph_svg(derivation: Derivation, subspace: str | Iterable[str] | None = None) -> str:
@@ -138,18 +177,28 @@ def _wanted(derivation: Derivation, subspace: str | Iterable[str] | None) -> Seq
     return wanted
 
 
-def composed(title: str, panels: Sequence[Panel]) -> Scene:
+def composed(
+    title: str, panels: Sequence[Panel], sketch: Sketch | None = None, remark: str = ""
+) -> Scene:
     """Panels in rows, and below them what the lines mean."""
     kinds = dict.fromkeys(kind for panel in panels for kind in panel.kinds)
     entries = edge_entries(list(kinds), any(panel.branches for panel in panels))
     if any(panel.bodies for panel in panels):
         entries += body_entries()
-    widest = max([WIDEST, *(panel.width for panel in panels)])
-    items, right, bottom = rows([(p.items, p.width, p.height) for p in panels], widest)
+    blocks: list[Block] = [(panel.items, panel.width, panel.height) for panel in panels]
+    if sketch is not None:
+        blocks.insert(1, (sketch.items, sketch.width, sketch.height))
+    widest = max([WIDEST, *(wide for _, wide, _ in blocks)])
+    items, right, bottom = rows(blocks, widest)
     key, key_width, key_height = legend(entries, max(right, LEAST_LEGEND))
     items += moved(key, 0, bottom + APART // 2)
     right, bottom = max(right, key_width), bottom + APART // 2 + key_height
-    about = "; ".join(panel.about for panel in panels)
+    if remark:
+        text = short(remark, LONGEST_REMARK)
+        bottom += 16
+        items.append(Text(0, bottom, text, SMALL, color=GREY))
+        right = max(right, width(text, SMALL))
+    about = "; ".join([panel.about for panel in panels] + ([sketch.about] if sketch else []))
     placed = moved(items, MARGIN, MARGIN)
     return Scene(right + 2 * MARGIN, bottom + 2 * MARGIN, title, about, placed)
 
@@ -160,17 +209,17 @@ Block = tuple["tuple[Item, ...]", int, int]
 def rows(blocks: Sequence[Block], widest: int) -> tuple[list[Item], int, int]:
     """Blocks in rows of columns, low ones above each other; with the width and height they take."""
     items: list[Item] = []
-    top = bottom = left = edge = y = right = 0
+    top = bottom = left = edge = y = right = tallest = 0
     for block, wide, high in blocks:
-        if items and y + high <= top + (bottom - top) * 3 // 2 and left + wide <= widest:
+        if items and y + high <= top + tallest * 5 // 4 and left + wide <= widest:
             pass  # under the last one
         elif items and edge + wide <= widest:
             left, y = edge, top
         elif items:
-            left, edge, top = 0, 0, bottom + APART
+            left, edge, top, tallest = 0, 0, bottom + APART, 0
             y = top
         items += moved(block, left, y)
         y += high + APART
         edge, right = max(edge, left + wide + APART), max(right, left + wide)
-        bottom = max(bottom, y - APART)
+        bottom, tallest = max(bottom, y - APART), max(tallest, high)
     return items, right, bottom
