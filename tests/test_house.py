@@ -77,8 +77,9 @@ UPWARD = {
     # locking a joint moves a frame by the joint's motion
     ("assemblies", "kinematics"),
 }
-"""Imports upwards, inside functions. The list is to shrink. What shows a stage stands above it: the methods that
-notebooks call, `_repr_svg_` and the like, are free to import it."""
+"""Imports upwards, inside functions. The list is to shrink.
+
+What shows a stage stands above it: methods that notebooks call, `_repr_svg_` and the like, may import it."""
 
 SHOWING = re.compile(r"_repr_[a-z]+_")
 

@@ -7,10 +7,11 @@ for few crossings, and the places, for straight edges. All in integers: the same
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from bisect import bisect_right, insort
+from collections.abc import Hashable
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 if TYPE_CHECKING:
@@ -68,7 +69,9 @@ class Bands:
         """Nothing is ordered yet."""
         self.apart: Mapping[tuple[int, int], int] = {}
         self.cells = cells
-        self.rows: list[list[int]] = [[] for _ in range(1 + max((c.band for c in cells), default=0))]
+        self.rows: list[list[int]] = [
+            [] for _ in range(1 + max((c.band for c in cells), default=0))
+        ]
         for k, cell in enumerate(cells):
             self.rows[cell.band].append(k)
         self.above: list[list[Link]] = [[] for _ in cells]
@@ -203,7 +206,7 @@ class Bands:
     def _distances(self, row: list[int]) -> list[int]:
         """How far the reference of each thing of a band is at least from that of the one before."""
         found = [0] * min(1, len(row))
-        for a, b in zip(row, row[1:], strict=False):
+        for a, b in pairwise(row):
             near = self.cells[a].right + GAP + self.cells[b].left
             found.append(max(near, self.apart.get((a, b), 0)) * FINE)
         return found
@@ -272,8 +275,14 @@ class Bands:
     def _wish(self, k: int, one_sided: bool, upward: bool) -> tuple[int, int]:
         """The weight of a thing's links, and the weighted sum of the places they want it at."""
         weight = wish = 0
-        links = [(x, x.low, x.low_port, x.high_port) for x in self.below[k] if upward or not one_sided]
-        links += [(x, x.high, x.high_port, x.low_port) for x in self.above[k] if not (upward and one_sided)]
+        links = [
+            (x, x.low, x.low_port, x.high_port) for x in self.below[k] if upward or not one_sided
+        ]
+        links += [
+            (x, x.high, x.high_port, x.low_port)
+            for x in self.above[k]
+            if not (upward and one_sided)
+        ]
         for x, far, far_port, port in links:
             weight += x.weight
             wish += x.weight * self._over(far, far_port, k, port)

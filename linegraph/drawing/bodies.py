@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from linegraph.graph import Edge
 
-HEIGHT, STEM = 46, 25
+HEIGHT, STEM = 48, 26
 """Of a body's region, and of the stem from its top."""
 
 INERTIA = "inertia"
@@ -125,7 +125,7 @@ def drawn(body: Body, shape: Shape) -> tuple[list[Item], list[Item]]:
     """The region with its arms, and what stands above edges; from the upper left corner."""
     name = short(body.name)
     region = Region(0, 0, shape.width, HEIGHT, 10, Pen(EDGE_OF_TINT, 1), TINT)
-    title = Text(shape.info, 15, name, 11, bold=True)
+    title = Text(shape.info, 13, name, 11, bold=True)
     under: list[Item] = [Part("body", body.name, (region, title), "body")]
     above: list[Item] = []
     hub = (shape.info + 6, STEM)
@@ -154,9 +154,11 @@ def _vertex(body: Body, vertex: str, x: int, y: int) -> Part:
     label = body.label(vertex)
     items: list[Item] = [Disc(x, y, 3.2, None, INK)]
     if label:
-        inside = {0: 13, HEIGHT: HEIGHT - 5}.get(y, y + 3)
+        inside = {0: 12, HEIGHT: HEIGHT - 5}.get(y, y + 3)
         items.append(Text(x - 6, inside, label, SMALL, "end", GREY))
-    return Part("vertex", vertex, tuple(items), "frame of the body" if label else "the body's own frame")
+    return Part(
+        "vertex", vertex, tuple(items), "frame of the body" if label else "the body's own frame"
+    )
 
 
 def _center(x: int, y: int) -> tuple[Item, ...]:
@@ -188,7 +190,7 @@ def _inertia(body: Body, hub: tuple[int, int]) -> Part:
         line((end, y), (x + 10, y), pen=pen),
         arrow_head((x + 12, y), (-1, 0), pen.color),
         *ground_sign(end, y),
-        Text(x + 10, y + 14, INERTIA, SMALL, color=GREY),
+        Text(x + 8, y + 16, INERTIA, SMALL, color=GREY),
     ]
     role = "branch" if body.bold else "chord"
     about = f"{role}, {body.inertia.tail} → {body.inertia.head}"

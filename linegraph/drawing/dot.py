@@ -80,5 +80,7 @@ def _panel(k: int, title: str, topology: Topology, kinds: Mapping[str, str]) -> 
 
 def _vertex(k: int, vertex: str) -> str:
     """A point with its name beside it; ground a bar. Names are made unique by the number of the subspace."""
-    looks = "shape=box, style=filled, fillcolor=black, width=1.5, height=0.06, label=\"\", "
-    return f"{quoted(f'{k}:{vertex}')} [{looks if vertex == GROUND else ''}xlabel={quoted(vertex)}];"
+    looks = 'shape=box, style=filled, fillcolor=black, width=1.5, height=0.06, label="", '
+    return (
+        f"{quoted(f'{k}:{vertex}')} [{looks if vertex == GROUND else ''}xlabel={quoted(vertex)}];"
+    )

@@ -59,7 +59,9 @@ def picture(
         raise LinegraphError("--subspace is of the graph: leave it out, or draw --what both")
     if ending == ".dot":
         if what != "graph":
-            raise LinegraphError("a .dot file holds the graph alone: write the sketch as .svg or .png")
+            raise LinegraphError(
+                "a .dot file holds the graph alone: write the sketch as .svg or .png"
+            )
         return dot_text(derivation, subspaces or None)
     if what == "sketch":
         scene = mechanism_scene(derivation, hold=hold)

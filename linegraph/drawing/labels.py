@@ -1,4 +1,4 @@
-"""Names beside things: each where it is free, near its thing; else farther off, with a line that leads to it."""
+"""Names beside things: each where it is free, near its thing; else farther off, with a line to it."""
 
 from __future__ import annotations
 
@@ -98,8 +98,8 @@ class Labels:
         box = label.box
         ground: list[Item] = []
         if any(_holds(box, p) for p in self.lines):  # a line ends where a name stands on it
-            size_of_box = (box.right - box.left, box.bottom - box.top)
-            ground = [Region(tenth(box.left), tenth(box.top), *map(tenth, size_of_box), 2, None, PAPER)]
+            wide, high = tenth(box.right - box.left), tenth(box.bottom - box.top)
+            ground = [Region(tenth(box.left), tenth(box.top), wide, high, 2, None, PAPER)]
         if best[2] < LEADING:
             return [*ground, label]
         x = min(max(at[0], box.left - 2), box.right + 2)
@@ -108,7 +108,12 @@ class Labels:
 
     def _free(self, box: Box) -> bool:
         room = self.inside
-        if box.left < room.left or box.right > room.right or box.top < room.top or box.bottom > room.bottom:
+        if (
+            box.left < room.left
+            or box.right > room.right
+            or box.top < room.top
+            or box.bottom > room.bottom
+        ):
             return False
         return not any(box.meets(other, 1.5) for other in self.taken)
 

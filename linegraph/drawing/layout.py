@@ -7,6 +7,7 @@ connects it with the next are in band 2k + 1.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from linegraph.body import GROUND
@@ -226,7 +227,7 @@ class _Making:
             lane = _lane(edge if labelled else None, band)
             cells.append((self.add(lane, key, -1, k), ""))
         cells.append(self._end(high, key, k))
-        for (a, pa), (b, pb) in zip(cells, cells[1:], strict=False):
+        for (a, pa), (b, pb) in pairwise(cells):
             lanes = pa == "" and pb == ""
             self.links.append(Link(a, pa, b, pb, STRAIGHT if lanes else weight))
         self.found.routes.append(Route(edge, upward, cells, len(cells) - 2))
@@ -326,7 +327,10 @@ def _measure_arch(found: Plan, k: int) -> None:
     first, second = cell.ports
     cell.offsets = {first: -inner - legs // 2, second: inner + legs // 2}
     (a, vertex_a), (b, vertex_b) = routes[0].cells[0], routes[0].cells[3]
-    if found.node.get(vertex_a) not in found.bodies and found.node.get(vertex_b) not in found.bodies:
+    if (
+        found.node.get(vertex_a) not in found.bodies
+        and found.node.get(vertex_b) not in found.bodies
+    ):
         found.apart[(a, b)] = found.apart[(b, a)] = 2 * cell.left + GAP
 
 

@@ -7,13 +7,24 @@ from typing import TYPE_CHECKING
 from linegraph.drawing.bodies import ARM, ground_sign, quartered
 from linegraph.drawing.letters import width
 from linegraph.drawing.looks import CHORD_PEN, PLAIN, pen_of
-from linegraph.drawing.scene import GREY, INK, SMALL, Disc, Item, Part, Text, arrow_head, line, moved
+from linegraph.drawing.scene import (
+    GREY,
+    INK,
+    SMALL,
+    Disc,
+    Item,
+    Part,
+    Text,
+    arrow_head,
+    line,
+    moved,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 Entry = tuple[tuple[Item, ...], str]
-SAMPLE, LINE, APART = 34, 16, 18
+SAMPLE, LINE, APART = 50, 16, 18
 
 
 def edge_entries(kinds: Sequence[tuple[str, bool]], treed: bool) -> list[Entry]:
@@ -31,20 +42,20 @@ def edge_entries(kinds: Sequence[tuple[str, bool]], treed: bool) -> list[Entry]:
 def body_entries() -> list[Entry]:
     """Samples of what stands inside a body."""
     pen = CHORD_PEN
-    inertia = (line((26, 0), (6, 0), pen=pen), arrow_head((5, 0), (-1, 0), pen.color))
+    inertia = (line((36, 0), (10, 0), pen=pen), arrow_head((9, 0), (-1, 0), pen.color))
     return [
-        ((*inertia, *ground_sign(26, 0)), "inertia edge BODY/inertia, from ground"),
-        (quartered(16, 0, 5), "mass centre"),
-        ((Disc(16, 0, 3.2, None, INK),), "frame; without a name the body's own"),
-        ((line((4, 0), (28, 0), pen=ARM),), "rigid arm BODY/arm, a branch"),
+        ((*inertia, *ground_sign(36, 0)), "inertia edge BODY/inertia, from ground"),
+        (quartered(23, 0, 5), "mass centre"),
+        ((Disc(23, 0, 3.2, None, INK),), "frame; without a name the body's own"),
+        ((line((4, 0), (42, 0), pen=ARM),), "rigid arm BODY/arm, a branch"),
     ]
 
 
 def _sample(kind: str, bold: bool) -> tuple[Item, ...]:
     pen = pen_of(kind, bold)
     return (
-        line((2, 0), (30, 0), pen=pen),
-        arrow_head((20, 0), (1, 0), pen.color, 8 if bold else 7),
+        line((2, 0), (44, 0), pen=pen),
+        arrow_head((36, 0), (1, 0), pen.color, 8 if bold else 7),
     )
 
 

@@ -71,11 +71,11 @@ def _letter_width(letter: str) -> int:
 
 
 def clean(text: str) -> str:
-    """The text on one line, with characters that cannot be drawn, or turn the line round, replaced.
+    r"""The text on one line, with characters that cannot be drawn, or turn the line round, replaced.
 
     Example:
-        >>> clean("a\\nb\\x00")
-        'a b\\ufffd'
+        >>> clean("a\nb\x00")
+        'a b\ufffd'
     """
     return "".join(_drawable(letter) for letter in text)
 

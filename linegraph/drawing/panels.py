@@ -104,8 +104,9 @@ class Panel:
         above: list[Item] = []
         for name, body in self.plan.bodies.items():
             x, y = self._at(*self._corner(name))
-            for items, target in zip(drawn(body, self.plan.shapes[name]), (under, above), strict=True):
-                target += moved(items, x, y)
+            behind, before = drawn(body, self.plan.shapes[name])
+            under += moved(behind, x, y)
+            above += moved(before, x, y)
         return under, above
 
     def _corner(self, name: str) -> tuple[float, float]:
@@ -236,7 +237,10 @@ def _fans(plan: Plan) -> dict[tuple[str, bool], list[str]]:
     for route in plan.routes:
         if route.arch < 0:
             (_, low), (_, high) = route.cells[0], route.cells[-1]
-            for vertex, upward, beside in ((low, True, route.cells[1]), (high, False, route.cells[-2])):
+            for vertex, upward, beside in (
+                (low, True, route.cells[1]),
+                (high, False, route.cells[-2]),
+            ):
                 place = plan.cells[beside[0]].x
                 found.setdefault((vertex, upward), []).append((place, route.edge.name))
     return {key: [name for _, name in sorted(edges)] for key, edges in found.items()}

@@ -9,8 +9,8 @@ from linegraph.domains import SPATIAL
 from linegraph.drawing.legend import body_entries, edge_entries, legend
 from linegraph.drawing.letters import short, width
 from linegraph.drawing.looks import kinds_of
-from linegraph.drawing.panels import Panel
 from linegraph.drawing.mechanism import Sketch
+from linegraph.drawing.panels import Panel
 from linegraph.drawing.poses import poses
 from linegraph.drawing.scene import GREY, SMALL, Item, Scene, Text, moved
 from linegraph.drawing.svg import svg_text
@@ -173,7 +173,9 @@ def _wanted(derivation: Derivation, subspace: str | Iterable[str] | None) -> Seq
     wanted = [subspace] if isinstance(subspace, str) else list(subspace)
     for name in wanted:
         if name not in present:
-            raise ModelError(f'subspace "{name}"', f"is not in this model; {nearest(name, present)}")
+            raise ModelError(
+                f'subspace "{name}"', f"is not in this model; {nearest(name, present)}"
+            )
     return wanted
 
 

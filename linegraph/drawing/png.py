@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from linegraph.drawing.letters import clean
 from linegraph.drawing.scene import PAPER, Disc, Pen, Region, Scene, Stroke, Text, flat
@@ -18,6 +18,11 @@ SCALE, MOST_PIXELS = 2, 12000
 """Pixels for a unit, and the longest side in pixels: a larger picture has fewer for a unit."""
 
 POINTS = 72
+ANCHORS: dict[str, Literal["left", "center", "right"]] = {
+    "start": "left",
+    "middle": "center",
+    "end": "right",
+}
 
 
 def png_bytes(scene: Scene) -> bytes:
@@ -49,7 +54,7 @@ def png_bytes(scene: Scene) -> bytes:
             artist.set_zorder(place)
             axes.add_artist(artist)
         file = io.BytesIO()
-        canvas.print_png(file, metadata={"Software": None})
+        canvas.print_png(file, metadata={"Software": None})  # type: ignore[no-untyped-call]
     return file.getvalue()
 
 
@@ -57,7 +62,8 @@ def _fonts(matplotlib: Any) -> dict[tuple[bool, bool], Path]:
     """The files of DejaVu Sans by bold and slanted."""
     folder = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
     return {
-        (bold, slanted): folder / f"DejaVuSans{'-' * (bold or slanted)}{'Bold' * bold}{'Oblique' * slanted}.ttf"
+        (bold, slanted): folder
+        / f"DejaVuSans{'-' * (bold or slanted)}{'Bold' * bold}{'Oblique' * slanted}.ttf"
         for bold in (False, True)
         for slanted in (False, True)
     }
@@ -78,7 +84,7 @@ def _artists(scene: Scene, fonts: dict[tuple[bool, bool], Path]) -> Iterator[Any
                 clean(item.text),
                 color=item.color,
                 fontproperties=font,
-                horizontalalignment={"start": "left", "middle": "center", "end": "right"}[item.anchor],
+                horizontalalignment=ANCHORS[item.anchor],
                 verticalalignment="baseline",
                 parse_math=False,
             )

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import sqrt
 from typing import TYPE_CHECKING
 
-from linegraph.body import GROUND
+from linegraph.body import GROUND, Placement
 from linegraph.elements import Load
 from linegraph.errors import ModelError
 from linegraph.frames import seated
-from linegraph.kinematics import Seat, compose, mass_center
+from linegraph.kinematics import Seat, compose, mass_center, resolved
 from linegraph.search import at_some_time
 from linegraph.vector import Vector, transpose
 
@@ -162,10 +163,8 @@ def _ties(
     def end(terminal: str) -> tuple[int, Vector]:
         body, placement = terminals[terminal]
         link, own = numeric.tree.bodies[body]
-        constant = type(placement)(
-            tuple(numeric.resolve(x) for x in placement.at),
-            tuple(tuple(numeric.resolve(x) for x in row) for row in placement.rotation),
-        )
+        a, b, c = (resolved(row, numeric.resolve) for row in placement.rotation)
+        constant = Placement(resolved(placement.at, numeric.resolve), (a, b, c))
         whole = compose(own, constant, model.snap)
         return link, _floats(seated(chords.frames, Seat(link, whole.at, whole.rotation)).origin)
 
@@ -176,11 +175,9 @@ def _ties(
         elif element.between is not None:
             (a, tail), (b, head) = map(end, element.between)
             ties.append(Tie(element.name, element.kind, (a, b), tail, head))
-        elif element.joint in joints:
+        elif element.joint is not None and element.joint in joints:
             at = joints[element.joint]
-            ties.append(
-                Tie(element.name, element.kind, at.links, at.tail, at.head, element.joint)
-            )
+            ties.append(Tie(element.name, element.kind, at.links, at.tail, at.head, element.joint))
     for limit in model.constraints:
         (a, tail), (b, head) = map(end, limit.ends)
         ties.append(Tie(limit.name, limit.kind, (a, b), tail, head))
@@ -189,7 +186,7 @@ def _ties(
 
 def _upward(gravity: Vector) -> Vector | None:
     x, y, z = (float(c) for c in gravity)
-    length = (x * x + y * y + z * z) ** 0.5
+    length = sqrt(x * x + y * y + z * z)
     return (-x / length, -y / length, -z / length) if length else None
 
 

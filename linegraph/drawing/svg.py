@@ -1,4 +1,4 @@
-"""A scene as SVG: no fonts, scripts or anything else from outside, no ids, the same bytes for the same scene."""
+"""A scene as SVG: no fonts, scripts or anything else from outside, no ids, the same bytes each time."""
 
 from __future__ import annotations
 

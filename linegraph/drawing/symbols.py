@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import TYPE_CHECKING
 
 from linegraph.drawing.scene import (
@@ -30,7 +31,7 @@ END_ON = 0.35
 
 def joint_symbol(kind: str, at: Point, axis: Point) -> list[Item]:
     """The sign of a joint; `axis` is its direction in the picture, shorter than 1 where seen aslant."""
-    length = (axis[0] * axis[0] + axis[1] * axis[1]) ** 0.5
+    length = sqrt(axis[0] * axis[0] + axis[1] * axis[1])
     end_on = length < END_ON
     along = (1.0, 0.0) if end_on else (axis[0] / length, axis[1] / length)
     draw = _SIGNS.get(kind, _compound)
@@ -77,16 +78,22 @@ def _prismatic(at: Point, along: Point, end_on: bool) -> list[Item]:
         return [_box(at, (1, 0), 7, 7), Disc(*at, 1.8, None, ACCENT)]
     place = _about(at, along)
     guides = [line(place(-19, b), place(19, b), pen=THIN) for b in (-6, 6)]
-    arrow = [line(place(-6, 0), place(6, 0), pen=Pen(ACCENT, 1.2)), arrow_head(place(9, 0), along, ACCENT, 6)]
+    arrow = [
+        line(place(-6, 0), place(6, 0), pen=Pen(ACCENT, 1.2)),
+        arrow_head(place(9, 0), along, ACCENT, 6),
+    ]
     return [*guides, _box(at, along, 11, 6), *arrow]
 
 
 def carriage(at: Point, axis: Point) -> list[Item]:
     """A slider that is a body with other joints in its middle; the arrow stands beside it."""
-    length = (axis[0] * axis[0] + axis[1] * axis[1]) ** 0.5
+    length = sqrt(axis[0] * axis[0] + axis[1] * axis[1])
     along = (axis[0] / length, axis[1] / length)
     place = _about(at, along)
-    arrow = [line(place(25, 0), place(38, 0), pen=Pen(ACCENT, 1.2)), arrow_head(place(43, 0), along, ACCENT, 6)]
+    arrow = [
+        line(place(25, 0), place(38, 0), pen=Pen(ACCENT, 1.2)),
+        arrow_head(place(43, 0), along, ACCENT, 6),
+    ]
     return [_box(at, along, 22, 12), *arrow]
 
 
@@ -112,7 +119,10 @@ def _spherical(at: Point, along: Point, end_on: bool) -> list[Item]:
     r, k = 8.5, 0.5523 * 8.5
     socket = Stroke(
         (x - r, y),
-        (((x - r, y + k), (x - k, y + r), (x, y + r)), ((x + k, y + r), (x + r, y + k), (x + r, y))),
+        (
+            ((x - r, y + k), (x - k, y + r), (x, y + r)),
+            ((x + k, y + r), (x + r, y + k), (x + r, y)),
+        ),
         SOLID,
     )
     return [socket, Disc(x, y, 5.2, None, INK)]
@@ -121,7 +131,10 @@ def _spherical(at: Point, along: Point, end_on: bool) -> list[Item]:
 def _universal(at: Point, along: Point, end_on: bool) -> list[Item]:
     """A cross in a ring."""
     place = _about(at, (0.7071, 0.7071))
-    bars = [line(place(-7.5, 0), place(7.5, 0), pen=SOLID), line(place(0, -7.5), place(0, 7.5), pen=SOLID)]
+    bars = [
+        line(place(-7.5, 0), place(7.5, 0), pen=SOLID),
+        line(place(0, -7.5), place(0, 7.5), pen=SOLID),
+    ]
     return [Disc(*at, 7.5, SOLID, PAPER), *bars]
 
 
@@ -137,7 +150,11 @@ def _axis_pair(at: Point) -> list[Item]:
     x, y = at
     pen = Pen(ACCENT, 1)
     lines = (line((x - 4, y), (x + 4, y), pen=pen), line((x, y + 4), (x, y - 4), pen=pen))
-    return [*lines, arrow_head((x + 8, y), (1, 0), ACCENT, 5), arrow_head((x, y - 8), (0, -1), ACCENT, 5)]
+    return [
+        *lines,
+        arrow_head((x + 8, y), (1, 0), ACCENT, 5),
+        arrow_head((x, y - 8), (0, -1), ACCENT, 5),
+    ]
 
 
 def _free(at: Point, along: Point, end_on: bool) -> list[Item]:
@@ -168,7 +185,8 @@ def ground_symbol(at: Point, below: bool = True) -> list[Item]:
     (x, y), s = at, 1 if below else -1
     base = y + 14 * s
     hatch = [
-        line((x + 5 * k, base), (x + 5 * k - 5, base + 5 * s), pen=Pen(INK, 0.8)) for k in range(-2, 4)
+        line((x + 5 * k, base), (x + 5 * k - 5, base + 5 * s), pen=Pen(INK, 0.8))
+        for k in range(-2, 4)
     ]
     triangle = polygon((x, y), (x - 9, base), (x + 9, base), fill=PAPER, pen=THIN)
     return [triangle, line((x - 15, base), (x + 15, base), pen=Pen(INK, 1.8)), *hatch]
@@ -179,19 +197,25 @@ def hatched(at: Point, along: Point, away: float) -> list[Item]:
     if along[0] < 0 or (along[0] == 0 and along[1] < 0):
         along = (-along[0], -along[1])
     place = _about(at, along)
-    hatch = [line(place(5 * k, away), place(5 * k - 5, away + 5), pen=Pen(INK, 0.8)) for k in range(-6, 8)]
+    hatch = [
+        line(place(5 * k, away), place(5 * k - 5, away + 5), pen=Pen(INK, 0.8))
+        for k in range(-6, 8)
+    ]
     return [line(place(-35, away), place(35, away), pen=Pen(INK, 1.8)), *hatch]
 
 
 def tie_symbol(kind: str, tail: Point, head: Point, beside: float = 0) -> list[Item]:
     """A spring, a damper or another tie between two points, moved sideways to make room for its like."""
     dx, dy = head[0] - tail[0], head[1] - tail[1]
-    length = (dx * dx + dy * dy) ** 0.5
+    length = sqrt(dx * dx + dy * dy)
     if length < 8:
         return []
     place = _about(tail, (dx / length, dy / length))
     if kind == "rod":
-        return [line(tail, head, pen=Pen(INK, 2.4)), *(Disc(*p, 3, SOLID, PAPER) for p in (tail, head))]
+        return [
+            line(tail, head, pen=Pen(INK, 2.4)),
+            *(Disc(*p, 3, SOLID, PAPER) for p in (tail, head)),
+        ]
     if kind == "spring":
         return _spring(place, length, beside)
     if kind == "damper":
@@ -204,7 +228,9 @@ def _spring(place: Callable[[float, float], Point], length: float, beside: float
     turns = max(3, min(9, int(length / 12)))
     first, last = 0.2 * length, 0.8 * length
     step = (last - first) / (2 * turns)
-    teeth = [place(first + step * (k + 0.5), beside + (5 if k % 2 else -5)) for k in range(2 * turns)]
+    teeth = [
+        place(first + step * (k + 0.5), beside + (5 if k % 2 else -5)) for k in range(2 * turns)
+    ]
     ends = (place(0, 0), place(0.1 * length, beside), place(first, beside))
     rest = (place(last, beside), place(0.9 * length, beside), place(length, 0))
     return [line(*ends, *teeth, *rest, pen=SOLID)]
@@ -213,7 +239,13 @@ def _spring(place: Callable[[float, float], Point], length: float, beside: float
 def _damper(place: Callable[[float, float], Point], length: float, beside: float) -> list[Item]:
     """A piston in a cup."""
     a, b = 0.5 * length - 6, 0.5 * length + 8
-    cup = line(place(b, beside - 6), place(a, beside - 6), place(a, beside + 6), place(b, beside + 6), pen=SOLID)
+    cup = line(
+        place(b, beside - 6),
+        place(a, beside - 6),
+        place(a, beside + 6),
+        place(b, beside + 6),
+        pen=SOLID,
+    )
     return [
         line(place(0, 0), place(0.1 * length, beside), place(a, beside), pen=SOLID),
         cup,
@@ -225,7 +257,7 @@ def _damper(place: Callable[[float, float], Point], length: float, beside: float
 def capsule(a: Point, b: Point, r: float, pen: Pen, fill: str) -> list[Item]:
     """A bar with round ends."""
     dx, dy = b[0] - a[0], b[1] - a[1]
-    length = (dx * dx + dy * dy) ** 0.5
+    length = sqrt(dx * dx + dy * dy)
     if length < 1:
         return [Disc(*a, r, pen, fill)]
     place = _about(a, (dx / length, dy / length))

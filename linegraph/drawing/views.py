@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import sqrt
 from typing import TYPE_CHECKING
 
 from linegraph.vector import Vector, cross, dot, scale, subtract
@@ -98,7 +99,9 @@ def _aslant(upward: Vector, first: Vector, second: Vector, x: float, y: float) -
 def _hidden(view: View, points: Sequence[Vector], found: Poses) -> int:
     """How much cannot be told apart: pairs of points, and axes that are seen end-on."""
     flat = [view.seen(point) for point in points]
-    size = max((abs(a - b) for p in flat for q in flat for a, b in zip(p, q, strict=True)), default=0.0)
+    size = max(
+        (abs(a - b) for p in flat for q in flat for a, b in zip(p, q, strict=True)), default=0.0
+    )
     limit = NEAR * size
     count = 0
     for i, p in enumerate(flat):
@@ -133,7 +136,7 @@ def _unit(a: Vector) -> Vector:
 
 
 def _length(a: Vector) -> float:
-    return float(dot(a, a)) ** 0.5
+    return sqrt(dot(a, a))
 
 
 def _sum(a: Vector, b: Vector) -> Vector:
