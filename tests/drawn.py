@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from itertools import combinations
+from itertools import combinations, pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -91,6 +91,6 @@ def along(stroke: Stroke) -> Iterator[Point]:
 def _between(corners: list[Point], t: float) -> Point:
     """De Casteljau's construction."""
     while len(corners) > 1:
-        pairs = zip(corners, corners[1:], strict=False)
+        pairs = pairwise(corners)
         corners = [((1 - t) * a[0] + t * b[0], (1 - t) * a[1] + t * b[1]) for a, b in pairs]
     return corners[0]

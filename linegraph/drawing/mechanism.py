@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import TYPE_CHECKING
 
 from linegraph.drawing.bodies import quartered
@@ -50,6 +51,9 @@ LONG_SIGNS = ("revolute", "prismatic", "cylindrical", "helical", "compound", "pl
 MOST_LISTED = 9
 """Names in a list below the sketch; all of them stand in its title."""
 
+HOLDING = ("spring", "damper", "rod", "stop", "law", "friction", "edge")
+"""Ties that hold on to ground where they end there."""
+
 LINK_PEN, LINK_FILL = Pen("#6b7f96", 1.2), "#dde6f0"
 
 
@@ -91,6 +95,7 @@ class Sketch(Stand):
     def __init__(self, found: Poses) -> None:
         """Project and draw."""
         super().__init__(found)
+        self.middles: dict[str, Point] = {}
         items: list[Item] = [Text(0, 13, "mechanism", LARGE, bold=True)]
         for step in (
             self._links,
@@ -138,37 +143,36 @@ class Sketch(Stand):
         for place in self.poses.joints:
             if GROUND_LINK in place.links and place.joint.kind != "free":
                 items += self._support(place)
+        supported = {self.at[p.joint.name] for p in self.poses.joints if GROUND_LINK in p.links}
         for tie in self.poses.ties:
-            fixed = [
-                p
-                for link, p in zip(tie.links, (tie.tail, tie.head), strict=True)
-                if link == GROUND_LINK
-            ]
-            if (
-                fixed
-                and not tie.joint
-                and tie.kind in ("spring", "damper", "rod", "stop", "law", "friction", "edge")
-            ):
-                x, y = self.seen(fixed[0])
-                items += ground_symbol((x, y))
-                self.labels.taken.append(Box(x - 16, y, x + 16, y + 20))
+            tail, head = self.seen(tie.tail), self.seen(tie.head)
+            fixed, other = (tail, head) if tie.links[0] == GROUND_LINK else (head, tail)
+            if GROUND_LINK in tie.links and tie.kind in HOLDING and not tie.joint:
+                if fixed not in supported:
+                    items += self._ground(fixed, other[1] <= fixed[1])
+                supported.add(fixed)
         return [Part("ground", "ground", tuple(items), "the reference")] if items else []
 
     def _support(self, place: Place) -> list[Item]:
         """Ground at a joint, on the side where its link is not."""
         (x, y), axis = self.at[place.joint.name], self.along(place.axis)
-        length = (axis[0] ** 2 + axis[1] ** 2) ** 0.5
+        length = sqrt(axis[0] * axis[0] + axis[1] * axis[1])
         if place.joint.kind == "prismatic" and length >= END_ON:
             self.labels.taken.append(Box(x - 24, y - 12, x + 24, y + 18))
             away = 13 if self.is_carriage(place) else 9
             return hatched((x, y), (axis[0] / length, axis[1] / length), away)
+        tail = self.seen(place.tail if place.links[0] == GROUND_LINK else place.head)
+        if place.joint.kind in SLIDES and far(tail, (x, y), 12):
+            return self._ground(tail, True)
         every = [*self.at.values(), *(self.seen(c) for c in self.poses.centers.values())]
         below = sum(p[1] - y for p in every) <= 20 * len(every)
-        sense = 1 if below else -1
-        y += 8 * abs(axis[1]) * sense
-        top, bottom = sorted((y, y + 20 * sense))
+        return self._ground((x, y + 8 * abs(axis[1]) * (1 if below else -1)), below)
+
+    def _ground(self, at: Point, below: bool) -> list[Item]:
+        x, y = at
+        top, bottom = (y, y + 20) if below else (y - 20, y)
         self.labels.taken.append(Box(x - 16, top, x + 16, bottom))
-        return ground_symbol((x, y), below)
+        return ground_symbol(at, below)
 
     def _ties(self) -> list[Item]:
         items: list[Item] = []
@@ -183,7 +187,12 @@ class Sketch(Stand):
                 k = seen[(a, b)] = seen.get((a, b), -1) + 1
                 beside = 0 if tie.kind == "rod" else 16 * (k - (total[(a, b)] - 1) / 2)
                 shape = tie_symbol(tie.kind, a, b, beside)
-                self.labels.along((a, b))
+                for edge in (-6, 0, 6):
+                    self.labels.along(
+                        (_shifted(a, a, b, beside + edge), _shifted(b, a, b, beside + edge))
+                    )
+                middle = ((a[0] + b[0]) / 2, (a[1] + b[1]) / 2)
+                self.middles[tie.name] = _shifted(middle, a, b, beside)
             if shape:
                 items.append(Part("tie", tie.name, tuple(shape), tie.kind))
         return items
@@ -196,7 +205,11 @@ class Sketch(Stand):
             guide: list[Item] = []
             tail = self.seen(place.tail)
             if place.joint.kind in SLIDES and far(tail, at, 12):
-                pen = Pen(GREY, 1.2, (4, 3)) if place.joint.kind == "free" else Pen(GREY, 1.2)
+                pen = (
+                    Pen(GREY, 1.2, (4, 3))
+                    if place.joint.kind in ("free", "compound")
+                    else Pen(GREY, 1.2)
+                )
                 guide = [line(tail, at, pen=pen)]
                 self.labels.along((tail, at))
             large = self.is_carriage(place)
@@ -204,7 +217,7 @@ class Sketch(Stand):
             about = f"{place.joint.kind}, {' → '.join(place.joint.between)}"
             items.append(Part("joint", place.joint.name, (*guide, *sign), about))
             self.labels.taken.append(Box(at[0] - 9, at[1] - 9, at[0] + 9, at[1] + 9))
-            length = (axis[0] ** 2 + axis[1] ** 2) ** 0.5
+            length = sqrt(axis[0] * axis[0] + axis[1] * axis[1])
             if length >= END_ON and place.joint.kind not in ("spherical", "universal", "free"):
                 reach = 46 if large else 20
                 dx, dy = reach * axis[0] / length, reach * axis[1] / length
@@ -228,7 +241,7 @@ class Sketch(Stand):
         items: list[Item] = []
         for name, axis in (("x", (1, 0, 0)), ("y", (0, 1, 0)), ("z", (0, 0, 1))):
             dx, dy = self.along(axis)
-            length = (dx * dx + dy * dy) ** 0.5
+            length = sqrt(dx * dx + dy * dy)
             if length < 0.2:
                 items.append(Disc(x, y, 3, Pen(GREY, 1), PAPER))
                 items.append(Text(x - 11, y + 12, name, SMALL, "middle", GREY))
@@ -255,9 +268,8 @@ class Sketch(Stand):
                 items += self.labels.place(bodies[0] + more, self.middle(link), bold=True)
         for tie in self.poses.ties:
             if tie.kind == "load" or not tie.joint:
-                (ax, ay), (bx, by) = self.seen(tie.tail), self.seen(tie.head)
-                middle = (tenth((ax + bx) / 2), tenth((ay + by) / 2))
-                items += self.labels.place(tie.name, middle, color=GREY)
+                at = self.middles.get(tie.name, self.seen(tie.head))
+                items += self.labels.place(tie.name, at, color=GREY)
         reach = max((box.right for box in self.labels.taken), default=0)
         self.width = max(self.width, round(reach) + 6)
         low = max((box.bottom for box in self.labels.taken), default=0)
@@ -309,6 +321,13 @@ class Sketch(Stand):
             x += wide
         self.height += SIGN_HIGH if kinds else 0
         return [Part("legend", "joints", tuple(items))] if items else []
+
+
+def _shifted(point: Point, a: Point, b: Point, beside: float) -> Point:
+    """A point moved across the line from a to b."""
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    length = sqrt(dx * dx + dy * dy) or 1.0
+    return (tenth(point[0] - dy / length * beside), tenth(point[1] + dx / length * beside))
 
 
 def _in_words(tie: Tie) -> str:

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 WIDE, HIGH, BORDER = 340, 270, 95
 """Room for the mechanism, which grows with the number of its joints, and around it for names."""
 
-MORE, MOST, HIGHER = 14, 300, 1.4
+MORE, MOST, LARGER = 14, 300, 1.4
 
 TITLE = 24
-SLIDES = ("prismatic", "cylindrical", "helical", "planar", "free")
+SLIDES = ("prismatic", "cylindrical", "helical", "planar", "free", "compound")
 """Joints whose two frames may be apart."""
 
 SHIFTED = ("revolute", "cylindrical", "helical", "prismatic")
@@ -71,8 +71,8 @@ class Stand:
             if span > 1e-9
         ]
         self.scale = min(spans, default=1.0)
-        if (right - left) * self.scale < WIDE / 2:  # a high and narrow one has room to be higher
-            self.scale *= HIGHER
+        if min((right - left) * self.scale / WIDE, (high - low) * self.scale / HIGH) < 0.5:
+            self.scale *= LARGER  # a slender one has room to be longer
         self.width = round((right - left) * self.scale) + 2 * BORDER
         self.height = round((high - low) * self.scale) + 2 * BORDER - 30
         self.origin = (BORDER - left * self.scale, BORDER - 15 + high * self.scale)
