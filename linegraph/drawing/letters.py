@@ -21,7 +21,8 @@ _WIDTHS = {
     40: "()[]t",
     42: "r!",
     46: '"',
-    50: "*_`",
+    50: "*`",
+    52: "_",
     54: "?sz",
     56: "Lc",
     58: "Fk",
@@ -29,8 +30,9 @@ _WIDTHS = {
     62: "TYaeoP",
     64: "$0123456789ESbdghnpqu{}",
     66: "K",
-    69: "ABVXZ",
+    69: "BVXZ",
     70: "CR",
+    72: "A",
     76: "HNU",
     79: "DGOQ&",
     82: "w",
@@ -39,7 +41,7 @@ _WIDTHS = {
     100: "@",
 }
 _WIDTH = {letter: width for width, letters in _WIDTHS.items() for letter in letters}
-_OTHER, _WIDE, _BOLD = 88, 105, 115
+_OTHER, _WIDE, _BOLDER = 88, 105, 13
 
 
 def width(text: str, size: int, *, bold: bool = False) -> int:
@@ -49,9 +51,7 @@ def width(text: str, size: int, *, bold: bool = False) -> int:
         >>> width("shoulder", 12), width("", 12)
         (53, 0)
     """
-    total = sum(_letter_width(letter) for letter in text)
-    if bold:
-        total = total * _BOLD // 100
+    total = sum(_letter_width(letter) for letter in text) + _BOLDER * bold * len(text)
     return -(-total * size // 100)
 
 

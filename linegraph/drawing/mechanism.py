@@ -140,8 +140,10 @@ class Sketch(Stand):
     def _grounds(self) -> list[Item]:
         """A support wherever something is connected with ground."""
         items: list[Item] = []
+        base = self.poses.links[GROUND_LINK]
+        bodies = self._base(base) if base else []
         for place in self.poses.joints:
-            if GROUND_LINK in place.links and place.joint.kind != "free":
+            if GROUND_LINK in place.links and place.joint.kind != "free" and not base:
                 items += self._support(place)
         supported = {self.at[p.joint.name] for p in self.poses.joints if GROUND_LINK in p.links}
         for tie in self.poses.ties:
@@ -151,7 +153,19 @@ class Sketch(Stand):
                 if fixed not in supported:
                     items += self._ground(fixed, other[1] <= fixed[1])
                 supported.add(fixed)
-        return [Part("ground", "ground", tuple(items), "the reference")] if items else []
+        ground = [Part("ground", "ground", tuple(items), "the reference")] if items else []
+        return [*bodies, *ground]
+
+    def _base(self, bodies: Sequence[str]) -> list[Item]:
+        """Bodies that are welded to ground: supported at their frame."""
+        foot = self.seen(self.poses.origins[bodies[0]])
+        shape: list[Item] = []
+        for point in self.points[GROUND_LINK]:
+            if far(point, foot, 3):
+                shape += capsule(foot, point, 4.5, LINK_PEN, LINK_FILL)
+                self.labels.along((foot, point))
+        body = Part("body", ", ".join(bodies), tuple(shape), "fixed to ground")
+        return [body, Part("ground", "ground", tuple(self._ground(foot, True)), "the reference")]
 
     def _support(self, place: Place) -> list[Item]:
         """Ground at a joint, on the side where its link is not."""

@@ -73,6 +73,11 @@ def whole_scene(
     return composed(title, panels, sketch)
 
 
+def whole_svg(derivation: Derivation, subspace: str | Iterable[str] | None = None) -> str:
+    """`whole_scene` as SVG."""
+    return svg_text(whole_scene(derivation, subspace))
+
+
 def _panels(derivation: Derivation, subspace: str | Iterable[str] | None) -> list[Panel]:
     kinds = kinds_of(derivation.model)
     panels = []

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.drawing.labels import Labels
+from linegraph.drawing.labels import LONGEST_LABEL, Labels
+from linegraph.drawing.letters import short, width
 from linegraph.drawing.outline import far
 from linegraph.drawing.poses import GROUND_LINK, Place, Poses
-from linegraph.drawing.scene import Box, Point, tenth
+from linegraph.drawing.scene import NORMAL, Box, Point, tenth
 from linegraph.drawing.symbols import END_ON
 from linegraph.drawing.views import chosen_view
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
     from linegraph.vector import Vector
 
-WIDE, HIGH, BORDER = 340, 270, 95
+WIDE, HIGH, BORDER, MOST_BORDER = 340, 270, 95, 170
 """Room for the mechanism, which grows with the number of its joints, and around it for names."""
 
 MORE, MOST, LARGER = 14, 300, 1.4
@@ -73,9 +74,12 @@ class Stand:
         self.scale = min(spans, default=1.0)
         if min((right - left) * self.scale / WIDE, (high - low) * self.scale / HIGH) < 0.5:
             self.scale *= LARGER  # a slender one has room to be longer
-        self.width = round((right - left) * self.scale) + 2 * BORDER
-        self.height = round((high - low) * self.scale) + 2 * BORDER - 30
-        self.origin = (BORDER - left * self.scale, BORDER - 15 + high * self.scale)
+        names = [place.joint.name for place in self.poses.joints] + [*self.poses.origins]
+        widest = max(width(short(name, LONGEST_LABEL), NORMAL, bold=True) for name in names)
+        beside = min(MOST_BORDER, max(BORDER, widest + 30))
+        self.width = int((right - left) * self.scale) + 2 * beside
+        self.height = int((high - low) * self.scale) + 2 * BORDER - 30
+        self.origin = (beside - left * self.scale, BORDER - 15 + high * self.scale)
 
     def _extent(self) -> Iterator[Vector]:
         yield from (p for place in self.poses.joints for p in (place.tail, place.head))

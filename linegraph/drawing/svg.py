@@ -21,7 +21,8 @@ def svg_text(scene: Scene) -> str:
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{scene.width}" height="{scene.height}" '
         f'viewBox="0 0 {scene.width} {scene.height}" role="img" font-family="{FONT}" '
-        'style="max-width:100%;height:auto" fill="none" stroke-linejoin="round">'
+        'style="max-width:100%;height:auto" fill="none" stroke-linejoin="round" '
+        'text-rendering="geometricPrecision">'
     )
     paper = f'<rect width="{scene.width}" height="{scene.height}" fill="{PAPER}"/>'
     lines = [head, f"<title>{escaped(scene.title)}</title>", f"<desc>{escaped(scene.about)}</desc>"]
