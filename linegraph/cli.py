@@ -1,4 +1,4 @@
-"""The command line: `linegraph new`, `emit`, `show`, `check`, `trees`, `assemble`, `schema`, `completion`.
+"""The command line: `linegraph new`, `emit`, `show`, `graph`, `check`, `trees`, `assemble` and helpers.
 
 The only module that prints. Results go to standard output, messages and progress to standard error.
 Exit status: 0 done, 1 a check has failed, 2 the model or the call is wrong. Heavy modules are imported by
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from linegraph.cli_options import ABOUT_MODEL, EMIT, with_options
+from linegraph.cli_options import ABOUT_MODEL, EMIT, GRAPH, SET, with_options
 from linegraph.errors import LinegraphError, SourceErrors
 from linegraph.version import __version__
 
@@ -140,13 +140,7 @@ def trees(
 
 @main.command()
 @_about_model
-@click.option(
-    "--set",
-    "held",
-    metavar="COORDINATE=VALUE",
-    multiple=True,
-    help="Hold a coordinate at a value (rad or m). Repeatable.",
-)
+@with_options((SET,))
 def assemble(
     model: str,
     base: str,
@@ -185,6 +179,39 @@ def show(
 
         system = _read(model, base, locks, parameters, snap)
         click.echo(text(derive(system), lambda title: click.style(title, bold=True)), nl=False)
+
+
+@main.command()
+@_about_model
+@with_options(GRAPH)
+def graph(
+    model: str,
+    base: str,
+    locks: tuple[str, ...],
+    parameters: str | None,
+    snap: float,
+    held: tuple[str, ...],
+    output: str | None,
+    **choices: Any,
+) -> None:
+    """Draw the system graph of MODEL, its mechanism, or both.
+
+    In each subspace ground is a rail, vertices are dots, those of one body in a region of their own;
+    branches are bold, chords thin, each with its name. A mechanism is seen face-on where it is planar, at
+    the position that `assemble` finds.
+    """
+    with _explained():
+        from linegraph.derive import derive
+        from linegraph.drawing.files import picture, require_ending, write
+
+        require_ending(output)
+        values = dict(_assignment(text, "--set") for text in held)
+        derivation = derive(_read(model, base, locks, parameters, snap))
+        content = picture(derivation, output, hold=values, **choices)
+        if output is None:
+            click.echo(content, nl=False)
+        else:
+            click.echo(str(write(output, content)))
 
 
 @main.command()

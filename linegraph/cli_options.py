@@ -128,3 +128,40 @@ EMIT: tuple[Option, ...] = (
     ),
 )
 """What `emit` takes besides."""
+
+WHAT = ("graph", "sketch", "both")
+
+SET: Option = click.option(
+    "--set",
+    "held",
+    metavar="COORDINATE=VALUE",
+    multiple=True,
+    help="Hold a coordinate at a value (rad or m). Repeatable.",
+)
+"""Where a mechanism is to stand."""
+
+GRAPH: tuple[Option, ...] = (
+    click.option(
+        "-o",
+        "--output",
+        metavar="FILE",
+        type=click.Path(dir_okay=False, path_type=str),
+        help="The file to write: .svg, .png or .dot, for Graphviz.  [default: SVG to standard output]",
+    ),
+    click.option(
+        "--subspace",
+        "subspaces",
+        metavar="NAME",
+        multiple=True,
+        help="Draw this subspace, e.g. translation or electrical; repeatable.  [default: all]",
+    ),
+    click.option(
+        "--what",
+        type=click.Choice(WHAT),
+        default="graph",
+        show_default=True,
+        help="Draw the graph, a sketch of the mechanism, or both side by side.",
+    ),
+    SET,
+)
+"""What `graph` takes besides."""

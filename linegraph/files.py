@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 
-def write_all(folder: str | os.PathLike[str], files: Mapping[str, str]) -> list[Path]:
-    """Write texts under their names, replacing what stood there, in UTF-8 with LF line ends.
+def write_all(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]) -> list[Path]:
+    """Write files under their names, replacing what stood there; texts in UTF-8 with LF line ends.
 
     Everything is first written beside its place under another name and moved there last, so that an
     interrupted run leaves no half file under a final name.
@@ -27,8 +27,8 @@ def write_all(folder: str | os.PathLike[str], files: Mapping[str, str]) -> list[
     staged: list[tuple[str, Path]] = []
     try:
         target.mkdir(parents=True, exist_ok=True)
-        for name, text in files.items():
-            staged.append((_stage(target, text), target / name))
+        for name, content in files.items():
+            staged.append((_stage(target, content), target / name))
         for temporary, final in staged:
             os.replace(temporary, final)
     except OSError as error:
@@ -40,12 +40,12 @@ def write_all(folder: str | os.PathLike[str], files: Mapping[str, str]) -> list[
     return [final for _, final in staged]
 
 
-def _stage(folder: Path, text: str) -> str:
+def _stage(folder: Path, content: str | bytes) -> str:
     """Write to a new file in the folder, with the permissions of an ordinary one."""
     handle, temporary = tempfile.mkstemp(prefix=".linegraph-", dir=folder)
     try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as stream:
-            stream.write(text)
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(content.encode("utf-8") if isinstance(content, str) else content)
         mask = os.umask(0)
         os.umask(mask)
         os.chmod(temporary, 0o666 & ~mask)

@@ -131,6 +131,12 @@ class Projection:
             graph.add_edge(edge.tail, edge.head, key=edge.name, component=edge.component)
         return graph
 
+    def _repr_svg_(self) -> str:
+        """The picture a notebook shows."""
+        from linegraph.drawing.pictures import projection_svg
+
+        return projection_svg(self)
+
 
 @dataclass(frozen=True)
 class SystemGraph:
@@ -148,6 +154,12 @@ class SystemGraph:
     def domains(self) -> tuple[str, ...]:
         """The names of the domains present."""
         return tuple(projection.domain for projection in self.projections)
+
+    def _repr_svg_(self) -> str:
+        """The picture a notebook shows: all subspaces."""
+        from linegraph.drawing.pictures import system_svg
+
+        return system_svg(self.projections)
 
 
 def unite(terminal_graphs: Iterable[Iterable[Edge]]) -> SystemGraph:

@@ -51,7 +51,7 @@ class Search:
         self.np = numpy
         self.derivation = derivation
         self.draw = random.Random(seed)
-        self.numeric: Numeric = numeric or _at_some_time(derivation)
+        self.numeric: Numeric = numeric or at_some_time(derivation)
         self.tree: KinematicTree = self.numeric.tree
         self.equations = equations(self.tree)
         names = [quantity.name for quantity in self.tree.positions]
@@ -233,7 +233,7 @@ class Search:
         return f'{kind} "{name}"'
 
 
-def _at_some_time(derivation: Derivation) -> Numeric:
+def at_some_time(derivation: Derivation) -> Numeric:
     """The numeric reference at t = 0, or later where motions have no derivatives there."""
     try:
         return derivation.numeric()

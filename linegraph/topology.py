@@ -115,6 +115,12 @@ class Topology:
             tuple(rows),
         )
 
+    def _repr_svg_(self) -> str:
+        """The picture a notebook shows."""
+        from linegraph.drawing.pictures import topology_svg
+
+        return topology_svg(self)
+
     @property
     def _circuits(self) -> IntegerMatrix:
         """[B U] with its columns in the order of the projection's edges."""

@@ -1,0 +1,48 @@
+"""What kinds of edges there are and how each is drawn."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linegraph.body import GROUND
+from linegraph.components.forces import NetworkForce
+from linegraph.drawing.scene import BRANCH, GREY, Pen
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from linegraph.graph import Edge
+    from linegraph.model import Model
+
+BRANCH_PEN, CHORD_PEN, OPEN_PEN = Pen(BRANCH, 3), Pen(GREY, 1.2), Pen(GREY, 1.2)
+
+PLAIN, ELEMENT, LIMIT, PORT = "", "force element or load", "constraint", "port of a network"
+DASHES: Mapping[str, tuple[float, ...]] = {
+    PLAIN: (),
+    ELEMENT: (6, 3),
+    LIMIT: (10, 3, 2, 3),
+    PORT: (2, 2.5),
+}
+"""Kinds of edges by how their lines are broken."""
+
+
+def kinds_of(model: Model) -> dict[str, str]:
+    """The kind of each component of 3-D mechanics that is no joint, by its name."""
+    kinds = {e.name: PORT if isinstance(e, NetworkForce) else ELEMENT for e in model.elements}
+    return kinds | {limit.name: LIMIT for limit in model.constraints}
+
+
+def is_arm(edge: Edge) -> bool:
+    """Whether an edge is a rigid arm of a body or of ground."""
+    return edge.name.startswith(f"{edge.component}/arm")
+
+
+def is_inertia(edge: Edge) -> bool:
+    """Whether an edge is the inertia edge of a body."""
+    return edge.name == f"{edge.component}/inertia" and edge.tail == GROUND
+
+
+def pen_of(kind: str, bold: bool) -> Pen:
+    """Branches bold, chords thin, the line broken by kind."""
+    pen = BRANCH_PEN if bold else CHORD_PEN
+    return Pen(pen.color, pen.width, DASHES[kind])

@@ -1,0 +1,194 @@
+"""Where everything of a mechanism is at a configuration, in ground axes: what the sketch projects."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import sqrt
+from typing import TYPE_CHECKING
+
+from linegraph.body import GROUND, Placement
+from linegraph.elements import Load
+from linegraph.errors import ModelError
+from linegraph.frames import seated
+from linegraph.kinematics import Seat, compose, mass_center, resolved
+from linegraph.search import at_some_time
+from linegraph.vector import Vector, transpose
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from linegraph.closure import Chords
+    from linegraph.derive import Derivation, Numeric
+    from linegraph.joints import Joint
+
+GROUND_LINK = -1
+
+
+@dataclass(frozen=True)
+class Place:
+    """A joint where it stands.
+
+    Attributes:
+        links: of its tail and its head; -1 is ground.
+        tail, head: its frames' origins.
+        axis: the direction it is about, along or normal to.
+    """
+
+    joint: Joint
+    links: tuple[int, int]
+    tail: Vector
+    head: Vector
+    axis: Vector
+
+
+@dataclass(frozen=True)
+class Tie:
+    """A force element, a constraint or a load where it stands.
+
+    Attributes:
+        kind: what it is.
+        links: of its ends.
+        tail, head: its ends; the same where it sits in a joint.
+        joint: the joint it sits in.
+    """
+
+    name: str
+    kind: str
+    links: tuple[int, int]
+    tail: Vector
+    head: Vector
+    joint: str = ""
+
+
+@dataclass
+class Poses:
+    """A mechanism at a configuration.
+
+    Attributes:
+        links: the bodies of each link, welded together; those of ground at -1.
+        origins: of the bodies' own frames.
+        centers: the mass centre of each moving link with mass.
+        joints: those that are not fixed.
+        welds: the names of those that are.
+        ties: what else acts or constrains.
+        upward: against gravity, length 1; None without gravity.
+    """
+
+    links: dict[int, list[str]] = field(default_factory=dict)
+    origins: dict[str, Vector] = field(default_factory=dict)
+    centers: dict[int, Vector] = field(default_factory=dict)
+    joints: list[Place] = field(default_factory=list)
+    welds: list[str] = field(default_factory=list)
+    ties: list[Tie] = field(default_factory=list)
+    upward: Vector | None = None
+
+
+def poses(
+    derivation: Derivation,
+    q: Sequence[float] | None = None,
+    hold: Mapping[str, float] | None = None,
+) -> Poses:
+    """Every body and joint at a configuration.
+
+    Args:
+        derivation: a derived model with bodies.
+        q: the coordinates; those that close all loops, from the start values on, if left out.
+        hold: coordinates that keep the value given while the loops are closed, by name.
+
+    Raises:
+        ModelError: a parameter has no value, there is no body, or `q` has another length.
+    """
+    model = derivation.model
+    if not model.bodies:
+        raise ModelError(f'model "{model.name}"', "has no bodies: there is no mechanism to sketch")
+    for parameter in model.parameters.values():
+        if parameter.value is None:
+            problem = "has no value; a sketch of the mechanism needs one"
+            raise ModelError(f'parameter "{parameter.name}"', problem)
+    numeric = at_some_time(derivation)
+    if q is None:
+        held = hold or {}
+        q = derivation.placed_assembly(held).q if held else derivation.assembled.q
+    count = len(numeric.tree.positions)
+    if len(q) != count:
+        raise ModelError("q", f"{count} coordinates are needed, got {len(q)}")
+    at = list(q)
+    numeric.tree.normalise(at)
+    return _gathered(derivation, numeric, at)
+
+
+def _gathered(derivation: Derivation, numeric: Numeric, q: Sequence[float]) -> Poses:
+    model, tree = derivation.model, numeric.tree
+    chords = numeric.chords(q, [0.0] * len(tree.velocities))
+    found = Poses(upward=_upward(tree.gravity))
+    found.links[GROUND_LINK] = []
+    moments: dict[int, list[float]] = {}
+    for name, (link, placement) in tree.bodies.items():
+        frame = seated(chords.frames, Seat(link, placement.at, placement.rotation))
+        found.links.setdefault(link, [])
+        if name != GROUND:
+            found.links[link].append(name)
+            found.origins[name] = _floats(frame.origin)
+            body = model.bodies[name]
+            mass = float(numeric.resolve(body.mass))
+            center = _floats(frame.at(mass_center(body, numeric.resolve)).origin)
+            total = moments.setdefault(link, [0.0] * 4)
+            moments[link] = [a + mass * b for a, b in zip(total, (*center, 1.0), strict=True)]
+    for link, (x, y, z, mass) in moments.items():
+        if mass and link != GROUND_LINK:
+            found.centers[link] = (x / mass, y / mass, z / mass)
+    for joint in model.joints:
+        end = tree.ends[joint.name]
+        if joint.freedoms == 0:
+            found.welds.append(joint.name)
+            continue
+        tail, head = chords.ends(joint.name)
+        axis = transpose(tail.rotation)[2]
+        links = (end.tail.link, end.head.link)
+        found.joints.append(
+            Place(joint, links, _floats(tail.origin), _floats(head.origin), _floats(axis))
+        )
+    found.ties = _ties(derivation, numeric, chords, {p.joint.name: p for p in found.joints})
+    return found
+
+
+def _ties(
+    derivation: Derivation, numeric: Numeric, chords: Chords, joints: Mapping[str, Place]
+) -> list[Tie]:
+    """Force elements, constraints and loads."""
+    model = derivation.model
+    terminals = model.terminals()
+    ties = []
+
+    def end(terminal: str) -> tuple[int, Vector]:
+        body, placement = terminals[terminal]
+        link, own = numeric.tree.bodies[body]
+        a, b, c = (resolved(row, numeric.resolve) for row in placement.rotation)
+        constant = Placement(resolved(placement.at, numeric.resolve), (a, b, c))
+        whole = compose(own, constant, model.snap)
+        return link, _floats(seated(chords.frames, Seat(link, whole.at, whole.rotation)).origin)
+
+    for element in model.elements:
+        if isinstance(element, Load):
+            link, place = end(element.at)
+            ties.append(Tie(element.name, element.kind, (GROUND_LINK, link), place, place))
+        elif element.between is not None:
+            (a, tail), (b, head) = map(end, element.between)
+            ties.append(Tie(element.name, element.kind, (a, b), tail, head))
+        elif element.joint is not None and element.joint in joints:
+            at = joints[element.joint]
+            ties.append(Tie(element.name, element.kind, at.links, at.tail, at.head, element.joint))
+    for limit in model.constraints:
+        (a, tail), (b, head) = map(end, limit.ends)
+        ties.append(Tie(limit.name, limit.kind, (a, b), tail, head))
+    return ties
+
+
+def _upward(gravity: Vector) -> Vector | None:
+    x, y, z = (float(c) for c in gravity)
+    length = sqrt(x * x + y * y + z * z)
+    return (-x / length, -y / length, -z / length) if length else None
+
+
+def _floats(a: Vector) -> Vector:
+    return (float(a[0]), float(a[1]), float(a[2]))

@@ -1,0 +1,160 @@
+"""Where everything of a sketch stands: the view, the scale, joints moved apart, links between joints."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linegraph.drawing.labels import LONGEST_LABEL, Labels
+from linegraph.drawing.letters import short, width
+from linegraph.drawing.outline import far
+from linegraph.drawing.poses import GROUND_LINK, Place, Poses
+from linegraph.drawing.scene import NORMAL, Box, Point, tenth
+from linegraph.drawing.symbols import END_ON
+from linegraph.drawing.views import chosen_view
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from linegraph.vector import Vector
+
+WIDE, HIGH, BORDER, MOST_BORDER = 340, 270, 95, 170
+"""Room for the mechanism, which grows with the number of its joints, and around it for names."""
+
+MORE, MOST, LARGER = 14, 300, 1.4
+
+TITLE = 24
+SLIDES = ("prismatic", "cylindrical", "helical", "planar", "free", "compound")
+"""Joints whose two frames may be apart."""
+
+SHIFTED = ("revolute", "cylindrical", "helical", "prismatic")
+ACTUATED = ("prismatic", "cylindrical", "helical")
+
+SHIFTS = (0, -22, 22, -40, 40, -58, 58)
+CLEAR = 20
+"""A pin may stand anywhere on its axis: how far it is moved along it to be this far from others."""
+
+
+class Stand:
+    """A mechanism as it stands in the picture, not drawn yet.
+
+    Attributes:
+        poses, view: what is seen, and from where.
+        width, height: what it takes so far.
+        labels: where names may stand.
+        at: where the sign of each joint is.
+        points: where each link is connected.
+    """
+
+    def __init__(self, found: Poses) -> None:
+        """Project."""
+        self.poses = found
+        self.view = chosen_view(found)
+        self._fit()
+        self.labels = Labels(Box(0, TITLE, self.width, self.height))
+        self.at: dict[str, Point] = {}
+        self.points: dict[int, list[Point]] = {link: [] for link in found.links}
+        for place in found.joints:
+            self._seat(place)
+        for tie in found.ties:
+            if not tie.joint:
+                self._attach(tie.links[0], self.seen(tie.tail))
+                self._attach(tie.links[1], self.seen(tie.head))
+
+    def _fit(self) -> None:
+        """The scale, and where the origin of ground comes to stand."""
+        flat = [self.view.seen(point) for point in self._extent()]
+        left, right = min(x for x, _ in flat), max(x for x, _ in flat)
+        low, high = min(y for _, y in flat), max(y for _, y in flat)
+        more = min(MOST, MORE * max(0, len(self.poses.joints) - 4))
+        spans = [
+            (room + more) / span
+            for room, span in ((WIDE, right - left), (HIGH, high - low))
+            if span > 1e-9
+        ]
+        self.scale = min(spans, default=1.0)
+        if min((right - left) * self.scale / WIDE, (high - low) * self.scale / HIGH) < 0.5:
+            self.scale *= LARGER  # a slender one has room to be longer
+        names = [place.joint.name for place in self.poses.joints] + [*self.poses.origins]
+        widest = max(width(short(name, LONGEST_LABEL), NORMAL, bold=True) for name in names)
+        beside = min(MOST_BORDER, max(BORDER, widest + 30))
+        self.width = int((right - left) * self.scale) + 2 * beside
+        self.height = int((high - low) * self.scale) + 2 * BORDER - 30
+        self.origin = (beside - left * self.scale, BORDER - 15 + high * self.scale)
+
+    def _extent(self) -> Iterator[Vector]:
+        yield from (p for place in self.poses.joints for p in (place.tail, place.head))
+        yield from self.poses.centers.values()
+        yield from (p for tie in self.poses.ties for p in (tie.tail, tie.head))
+        yield from list(self.poses.origins.values())[:1]
+
+    def seen(self, point: Vector) -> Point:
+        """A point of the mechanism in the picture."""
+        x, y = self.view.seen(point)
+        return (tenth(self.origin[0] + x * self.scale), tenth(self.origin[1] - y * self.scale))
+
+    def along(self, direction: Vector) -> Point:
+        """A direction in the picture, shorter than 1 where it is seen aslant."""
+        x, y = self.view.seen(direction)
+        return (round(x, 9), -round(y, 9))
+
+    def _seat(self, place: Place) -> None:
+        """Where a joint's sign stands: clear of others where it may be moved along its axis."""
+        at = self.seen(place.head)
+        axis = self.along(place.axis)
+        if place.joint.kind in SHIFTED:
+            for shift in SHIFTS:
+                moved_to = (tenth(at[0] + shift * axis[0]), tenth(at[1] + shift * axis[1]))
+                if all(far(moved_to, other, CLEAR) for other in self.at.values()):
+                    at = moved_to
+                    break
+        tail = self.seen(place.tail) if place.joint.kind in SLIDES else at
+        if place.joint.kind in ACTUATED and GROUND_LINK not in place.links and far(tail, at, 40):
+            # between its ends, where a cylinder and its piston meet
+            self._attach(place.links[0], tail)
+            self._attach(place.links[1], at)
+            at = tail = (tenth((tail[0] + at[0]) / 2), tenth((tail[1] + at[1]) / 2))
+        self.at[place.joint.name] = at
+        self._attach(place.links[0], tail)
+        self._attach(place.links[1], at)
+
+    def _attach(self, link: int, at: Point) -> None:
+        if all(far(at, other, 3) for other in self.points[link]):
+            self.points[link].append(at)
+
+    def outline(self, link: int) -> list[Point]:
+        """The points a link is drawn between: where it is connected, and its mass if that is at one place."""
+        points = list(self.points[link])
+        if len(points) < 2:
+            center = self.center(link)
+            if center is not None and all(far(center, p, 3) for p in points):
+                points.append(center)
+        return points
+
+    def center(self, link: int) -> Point | None:
+        """A link's mass centre in the picture; None without mass."""
+        center = self.poses.centers.get(link)
+        return None if center is None else self.seen(center)
+
+    def is_carriage(self, place: Place) -> bool:
+        """Whether a slider is a body with another joint in its middle."""
+        at = self.at[place.joint.name]
+        x, y = self.along(place.axis)
+        others = (
+            self.at[p.joint.name]
+            for p in self.poses.joints
+            if p is not place and p.joint.kind != "prismatic"
+        )
+        return (
+            place.joint.kind == "prismatic"
+            and x * x + y * y >= END_ON * END_ON
+            and any(not far(at, other, 6) for other in others)
+        )
+
+    def middle(self, link: int) -> Point:
+        """Where a link's name points to: its mass centre, else its middle."""
+        center = self.center(link)
+        if center is not None:
+            return center
+        points = self.outline(link) or [self.seen(self.poses.origins[self.poses.links[link][0]])]
+        count = len(points)
+        return (tenth(sum(x for x, _ in points) / count), tenth(sum(y for _, y in points) / count))

@@ -1,0 +1,143 @@
+"""From where a mechanism is looked at: face-on where it moves in a plane, else aslant from above."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+from typing import TYPE_CHECKING
+
+from linegraph.vector import Vector, cross, dot, scale, subtract
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from linegraph.drawing.poses import Poses
+
+PARALLEL = 1e-6
+NEAR = 0.07
+"""Points closer than this fraction of the picture hide each other."""
+
+_HALF, _ROOT3 = 0.5, 0.8660254037844386
+_HIGH, _FLAT = 0.42261826174069944, 0.9063077870366499  # sine and cosine of 25 degrees
+
+_AZIMUTHS = (
+    (_HALF, -_ROOT3),
+    (_ROOT3, -_HALF),
+    (-_HALF, -_ROOT3),
+    (_ROOT3, _HALF),
+    (-_ROOT3, -_HALF),
+    (_HALF, _ROOT3),
+)
+"""Directions towards the eye, seen from above."""
+
+
+@dataclass(frozen=True)
+class View:
+    """An orthographic view by its axes in ground, each of length 1.
+
+    Attributes:
+        right, up: of the picture.
+        toward: to the eye.
+        planar: whether the mechanism is seen face-on.
+    """
+
+    right: Vector
+    up: Vector
+    toward: Vector
+    planar: bool
+
+    def seen(self, point: Vector) -> tuple[float, float]:
+        """A point, or a direction, in the picture; y upward."""
+        return (dot(self.right, point), dot(self.up, point))
+
+
+def chosen_view(found: Poses) -> View:
+    """The view of a mechanism."""
+    normal = _normal(found)
+    upward = found.upward or (0.0, 0.0, 1.0)
+    if normal is not None:
+        up = _in_plane(upward, normal)
+        if up is None:
+            other = (0.0, 1.0, 0.0) if abs(normal[1]) < 0.9 else (1.0, 0.0, 0.0)
+            up = _in_plane(other, normal)
+        assert up is not None
+        right = cross(up, normal)
+        largest = max(right, key=abs)
+        # of the two faces that one from which an axis of ground points to the right
+        if largest < 0:
+            normal, right = scale(-1, normal), scale(-1, right)
+        return View(right, up, normal, True)
+    first = _in_plane((1.0, 0.0, 0.0), upward) or _in_plane((0.0, 0.0, 1.0), upward)
+    assert first is not None
+    second = cross(upward, first)
+    views = [_aslant(upward, first, second, *azimuth) for azimuth in _AZIMUTHS]
+    points = _points(found)
+    return min(views, key=lambda view: _hidden(view, points, found))
+
+
+def _normal(found: Poses) -> Vector | None:
+    """The normal of the plane that all joints move in; None where there is none."""
+    turning = [p.axis for p in found.joints if p.joint.kind in ("revolute", "planar")]
+    sliding = [p.axis for p in found.joints if p.joint.kind == "prismatic"]
+    if len(turning) + len(sliding) < len(found.joints) or not found.joints:
+        return None
+    candidates: list[Vector] = turning[:1] or [(0.0, -1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)]
+    for normal in candidates:
+        flat = all(_length(cross(normal, axis)) < PARALLEL for axis in turning)
+        if flat and all(abs(dot(normal, axis)) < PARALLEL for axis in sliding):
+            return normal
+    return None
+
+
+def _aslant(upward: Vector, first: Vector, second: Vector, x: float, y: float) -> View:
+    level = _sum(scale(x, first), scale(y, second))
+    toward = _sum(scale(_FLAT, level), scale(_HIGH, upward))
+    right = _unit(cross(upward, toward))
+    return View(right, cross(toward, right), toward, False)
+
+
+def _hidden(view: View, points: Sequence[Vector], found: Poses) -> int:
+    """How much cannot be told apart: pairs of points, and axes that are seen end-on."""
+    flat = [view.seen(point) for point in points]
+    size = max(
+        (abs(a - b) for p in flat for q in flat for a, b in zip(p, q, strict=True)), default=0.0
+    )
+    limit = NEAR * size
+    count = 0
+    for i, p in enumerate(flat):
+        for j in range(i):
+            apart = max(abs(p[0] - flat[j][0]), abs(p[1] - flat[j][1]))
+            if apart < limit * (1 - 1e-9) and _length(subtract(points[i], points[j])) > limit:
+                count += 1
+    for place in found.joints:
+        x, y = view.seen(place.axis)
+        count += x * x + y * y < 0.1
+    return count
+
+
+def _points(found: Poses) -> list[Vector]:
+    """Distinct places of joints and mass centres, not too many."""
+    every = [p.head for p in found.joints] + list(found.centers.values())
+    kept: list[Vector] = []
+    for point in every:
+        if all(_length(subtract(point, other)) > 1e-9 for other in kept):
+            kept.append(point)
+    return kept[:60]
+
+
+def _in_plane(a: Vector, normal: Vector) -> Vector | None:
+    """The direction of a vector across another one; None where it is along it."""
+    rest = subtract(a, scale(dot(a, normal), normal))
+    return None if _length(rest) < 1e-3 else _unit(rest)
+
+
+def _unit(a: Vector) -> Vector:
+    return scale(1 / _length(a), a)
+
+
+def _length(a: Vector) -> float:
+    return sqrt(dot(a, a))
+
+
+def _sum(a: Vector, b: Vector) -> Vector:
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
