@@ -128,3 +128,25 @@ EMIT: tuple[Option, ...] = (
     ),
 )
 """What `emit` takes besides."""
+
+DERIVE: tuple[Option, ...] = (
+    click.option(
+        "--format",
+        type=click.Choice(["text", "markdown", "latex", "html"]),
+        help="What to write.  [default: as the ending of FILE says (.txt, .md, .tex, .html), else text]",
+    ),
+    click.option(
+        "--output",
+        metavar="FILE",
+        type=click.Path(path_type=str),
+        help="The file to write; without it the report goes to standard output.",
+    ),
+    click.option(
+        "--level",
+        type=click.Choice(["none", "fast", "full"]),
+        default="full",
+        show_default=True,
+        help="How far closed forms are simplified.",
+    ),
+)
+"""What `derive` takes besides."""

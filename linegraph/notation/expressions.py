@@ -134,7 +134,7 @@ class Expressions:
             return Quotient(ONE, self._power(base**-exponent))
         if exponent.is_Rational and exponent.q == 2:
             root = Root(self(base))
-            whole = int(exponent - exponent.__class__(1, 2))
+            whole = int(exponent.p) // 2
             return root if not whole else product([root, self._raised(base, whole)])
         if exponent.is_Float and float(exponent) == 0.5:
             return Root(self(base))

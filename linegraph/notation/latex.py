@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from linegraph.notation.names import LATEX_GREEK
 from linegraph.notation.tree import Call, Math, Name, Number, Product, Quotient, Raw
-from linegraph.notation.writing import ATOM, SIDES, SUM, Writer, visible
+from linegraph.notation.writing import ATOM, SIDES, SUM, Writer, digits, visible
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -88,7 +88,7 @@ class Latex(Writer):
             accent = _ACCENTS[min(name.dots, 3)]
             text = rf"{accent}{{{text}}}"
         if name.subs:
-            text += f"_{{{','.join(map(self._sub, name.subs))}}}"
+            text += f"_{{{('' if digits(name.subs) else ',').join(map(self._sub, name.subs))}}}"
         return f"{_BEFORE.get(name.before, name.before)}{text}"
 
     def _letter(self, text: str) -> str:

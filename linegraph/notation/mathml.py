@@ -7,12 +7,24 @@ from typing import TYPE_CHECKING
 
 from linegraph.notation.tree import Call, Math, Name, Number, Raw
 from linegraph.notation.latex import _wide
-from linegraph.notation.writing import ATOM, SUM, Writer, visible
+from linegraph.notation.writing import ATOM, SUM, Writer, digits, visible
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _DOTS = ("", "˙", "¨", "⃛")
+_BOLD = {
+    chr(start + k): chr(bold + k)
+    for start, count, bold in (
+        (ord("A"), 26, 0x1D468),
+        (ord("a"), 26, 0x1D482),
+        (ord("Α"), 25, 0x1D71C),
+        (ord("α"), 25, 0x1D736),
+    )
+    for k in range(count)
+}
+"""Letters and their bold italics, which fonts of mathematics have as letters of their own."""
+
 THIN = '<mspace width="0.17em"/>'
 
 
@@ -24,7 +36,7 @@ def element(tag: str, text: str) -> str:
 class MathMl(Writer):
     """Writes the inside of a ``math`` element."""
 
-    minus = "<mo>−</mo>"
+    minus = '<mo form="prefix">−</mo>'
     comma = "<mo>,</mo>"
 
     def bracketed(self, text: str) -> str:
@@ -42,12 +54,16 @@ class MathMl(Writer):
             dots = _DOTS[min(name.dots, 3)]
             text = f'<mover accent="true">{text}<mo>{dots}</mo></mover>'
         if name.subs:
-            low = "<mo>,</mo>".join(map(self._sub, name.subs))
+            low = ("" if digits(name.subs) else "<mo>,</mo>").join(map(self._sub, name.subs))
             text = f"<msub>{text}{self.one(low)}</msub>"
-        return f"<mo>{escape(name.before)}</mo>{text}" if name.before else text
+        if name.before:
+            return f'<mi mathvariant="normal">{escape(name.before)}</mi>{text}'
+        return text
 
     def _letter(self, text: str, bold: bool) -> str:
         shown = escape(visible(text), quote=False)
+        if bold and len(text) == 1 and text in _BOLD:
+            return f"<mi>{_BOLD[text]}</mi>"
         if bold:
             return f'<mi class="b">{shown}</mi>'
         return f"<mi>{shown}</mi>" if len(text) == 1 else f'<mi class="w">{shown}</mi>'

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from linegraph.notation.tree import Call, Math, Name, Number, Raw
-from linegraph.notation.writing import ATOM, POWER, SUBSCRIPTS, SUPERSCRIPTS, SUM, Writer, visible
+from linegraph.notation.writing import ATOM, POWER, SUBSCRIPTS, SUPERSCRIPTS, SUM, Writer, digits, visible
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,9 +26,8 @@ class Plain(Writer):
     def name(self, name: Name) -> str:
         """Digits as subscripts, all else behind ``_``; primes for dots."""
         subs = [visible(sub) for sub in name.subs]
-        low = "".join(subs)
-        if low.isascii() and low.isdigit() and (len(subs) == 1 or len(low) == len(subs)):
-            tail = low.translate(SUBSCRIPTS)
+        if len(subs) == 1 and subs[0].isascii() and subs[0].isdigit() or digits(subs):
+            tail = "".join(subs).translate(SUBSCRIPTS)
         else:
             tail = "".join(f"_{sub}" for sub in subs)
         dots = PRIMES[name.dots] if name.dots < len(PRIMES) else f"^({name.dots})"

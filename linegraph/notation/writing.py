@@ -61,6 +61,11 @@ def visible(text: str) -> str:
     return " ".join(shown.split())
 
 
+def digits(subs: Sequence[str]) -> bool:
+    """Whether subscripts are single digits, which need nothing between them."""
+    return bool(subs) and all(len(sub) == 1 and sub in "0123456789" for sub in subs)
+
+
 def _code(letter: str) -> str:
     return f"<U+{ord(letter):04X}>"
 

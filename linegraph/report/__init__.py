@@ -9,9 +9,11 @@
 from __future__ import annotations
 
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linegraph.errors import LinegraphError
+from linegraph.files import write_all
 from linegraph.report.overview import assembled, show
 
 if TYPE_CHECKING:
@@ -74,4 +76,16 @@ def format_of(path: str) -> str:
     raise LinegraphError(f"the ending of {path} tells no format: use {endings}, or --format")
 
 
-__all__ = ["FORMATS", "assembled", "format_of", "report", "show"]
+def save(path: str, text: str) -> Path:
+    """Write a report, whole or not at all.
+
+    Raises:
+        LinegraphError: it cannot be written.
+    """
+    target = Path(path)
+    if target.is_dir() or not target.name:
+        raise LinegraphError(f"cannot write to {path}: it is a folder")
+    return write_all(target.parent, {target.name: text})[0]
+
+
+__all__ = ["FORMATS", "assembled", "format_of", "report", "save", "show"]

@@ -32,10 +32,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Code:
-    """Text of a model: a name, a unit."""
+    """Text of a model, such as a name; or words that are `strong`."""
 
     text: str
     strong: bool = False
+
+    @property
+    def tag(self) -> str:
+        """The element that it is in HTML."""
+        return "strong" if self.strong else "code"
 
 
 Inline: TypeAlias = "str | Code | Math"

@@ -11,7 +11,7 @@ from linegraph.program import operations_of
 from linegraph.report.document import Block, Code, Formulas, Listing, Row, Section, said
 from linegraph.report.intermediates import listed_program
 from linegraph.report.laws import vector
-from linegraph.report.system import letter, motion_equation
+from linegraph.report.system import letter, listed, motion_equation
 from linegraph.shared import Functions
 
 if TYPE_CHECKING:
@@ -69,10 +69,7 @@ class Forms:
     @cached_property
     def closed(self) -> Any:
         """The derivation over sympy, simplified as far as asked for."""
-        derivation: Any = self._subject.derivation
-        if hasattr(derivation, "closed_form"):
-            return derivation.closed_form(self._subject.level, self._tell)
-        return derivation.symbolic
+        return self._subject.derivation.closed_form(self._subject.level, progress=self._tell)
 
     def tree(self, expression: Any) -> Math:
         """An expression as a formula."""
@@ -102,7 +99,7 @@ class Forms:
 
     def _motion(self) -> Section:
         self._tell("equations of motion")
-        blocks: list[Block] = [said("In ", motion_equation(self._subject), " there are")]
+        blocks: list[Block] = [said("In ", motion_equation(self._subject))]
         if self.short:
             form = self.closed
             blocks += self._matrix("M", form.mass_matrix, symmetric=True)
@@ -255,11 +252,11 @@ class Forms:
         rows = [
             Row(Name(n), self.tree(x)) for n, x in zip(names, form.energy, strict=False) if x != 0
         ]
-        words = ["kinetic energy T", "potential energy V", "and what networks store, W"]
+        words = ["kinetic energy T", "the potential energy V", "what networks store, W"]
         shown = [w for w, x in zip(words, form.energy, strict=False) if x != 0]
         if not rows:
             return Section("Energy", (said("Nothing stores energy."),))
-        return Section("Energy", (said(f"The {', '.join(shown)}:"), Formulas(tuple(rows))))
+        return Section("Energy", (said(f"The energy in the system: {listed(shown)}."), Formulas(tuple(rows))))
 
     def _reactions(self) -> Section:
         self._tell("reactions")

@@ -140,8 +140,8 @@ def _graph(subject: Subject, topology: Topology) -> list[Block]:
 def _incidence(projection: Projection) -> list[Block]:
     matrix = projection.incidence
     return [
-        said("Its incidence matrix, which with the vertex postulate makes the through variables at every "
-             "vertex add up to zero:"),
+        said("Its incidence matrix; by the vertex postulate the through variables at every vertex, each with "
+             "its sign there, add up to zero:"),
         Matrix("", matrix, ("vertices", "edges")),
     ]  # fmt: skip
 
@@ -184,7 +184,7 @@ def _mechanical(subject: Subject) -> list[Block]:
         if edge.name not in found:
             continue
         weight = found[edge.name]
-        shown = ("∞",) if math.isinf(weight) else (number(round(weight, 6)),)
+        shown = ("∞",) if math.isinf(weight) else (number(round(weight, 2)),)
         branch = edge.name in branches
         role = (Code("branch", strong=True),) if branch else ("chord",)
         rows.append(((Code(edge.name),), shown, role, _because(subject, edge)))

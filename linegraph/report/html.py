@@ -134,8 +134,7 @@ def _inline(part: object) -> str:
     if isinstance(part, str):
         return escape(visible_words(part))
     if isinstance(part, Code):
-        name = f"<code>{breakable(part.text)}</code>"
-        return f"<strong>{name}</strong>" if part.strong else name
+        return f"<{part.tag}>{breakable(part.text)}</{part.tag}>"
     return _running(part)  # type: ignore[arg-type]
 
 
@@ -149,7 +148,7 @@ def breakable(text: str) -> str:
 
 def _running(tree: Math) -> str:
     """A formula among words, in pieces where it is long."""
-    return " ".join(f"<math>{piece}</math>" for piece in _pieces(tree))
+    return "<wbr/>".join(f"<math>{piece}</math>" for piece in _pieces(tree))
 
 
 def _pieces(tree: Math) -> list[str]:
@@ -166,7 +165,7 @@ def _formulas(rows: Sequence[Row]) -> Iterator[str]:
         *before, last = _pieces(row.left)
         first, *others = _pieces(row.right)
         together = [*before, f"{last}{sign}{first}", *others]
-        yield f"<p>{' '.join(f'<math>{piece}</math>' for piece in together)}</p>"
+        yield f"<p>{'<wbr/>'.join(f'<math>{piece}</math>' for piece in together)}</p>"
     yield "</div>"
 
 

@@ -88,12 +88,12 @@ def _bodies(subject: Subject) -> tuple[Block, ...]:
             terms = Sum(((False, Product((tensor, spin.rate()))),
                          (False, crossed(spin, Product((tensor, spin))))))  # fmt: skip
             rows.append(Row(vector("τ", edge), negated(terms)))
-    text = (
+    text = said(
         "The inertia edge of a body exerts d'Alembert's force and torque on its mass centre, the weight with "
-        "it; its position r, its angular velocity and its central inertia J stand in them. Rigid arms have no "
-        "law for their through variables: their across variables are fixed in the body."
-    )
-    return (said(text), Formulas(tuple(rows))) if rows else (said(text),)
+        "it: here ", Name("r", bold=True), " is the position of the mass centre, ", Name("ω", bold=True),
+        " the angular velocity of the body and ", Name("J", bold=True), " its central inertia. Rigid arms have "
+        "no law for their through variables: their across variables are fixed in the body.")  # fmt: skip
+    return (text, Formulas(tuple(rows))) if rows else (text,)
 
 
 def _joints(subject: Subject) -> tuple[Block, ...]:
@@ -103,7 +103,7 @@ def _joints(subject: Subject) -> tuple[Block, ...]:
         rows.append(((Code(joint.name),), moves, pushes))
     text = (
         "A joint leaves its head free to move against its tail as its velocities say; in every other "
-        "direction it holds it with a reaction that does no work, so only the power of its effort u remains. "
+        "direction it holds it with a reaction that does no work, so only the power of its effort remains. "
         "Components are those in the axes of its head."
     )
     table = Table(("joint", "motion of the head against the tail", "effort"), tuple(rows))
@@ -169,12 +169,12 @@ def _elements(subject: Subject) -> tuple[Block, ...]:
     rows: list[Row] = []
     for element in subject.model.elements:
         rows += _load(subject, element) if isinstance(element, Load) else [_element(subject, element)]
-    text = (
-        "A positive through variable y of an element pulls: its two points together, along the line between "
-        "them whose length is ℓ, or the coordinate of its joint back. A load is the force and torque given."
-    )
+    text: Text = (
+        "A positive through variable ", Name("y"), " of an element pulls: its two points together, along the "
+        "line between them whose length is ", Name("ℓ"), ", or the coordinate of its joint back. A load is "
+        "the force and the torque given.")  # fmt: skip
     turning = [e.name for e in subject.model.elements if getattr(e, "axes", "") == BODY]
-    blocks: list[Block] = [said(text), Formulas(tuple(rows))]
+    blocks: list[Block] = [said(*text), Formulas(tuple(rows))]
     if turning:
         blocks.append(said("In the axes of the body they act on: ", Code(", ".join(turning)), "."))
     return tuple(blocks)

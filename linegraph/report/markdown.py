@@ -99,8 +99,7 @@ def _inline(part: object) -> str:
         stripped = inner.strip()
         return inner.replace(stripped, _SPECIAL.sub(_spoken, stripped)) if stripped else inner
     if isinstance(part, Code):
-        shown = code(part.text)
-        return f"**{shown}**" if part.strong and shown else shown
+        return f"**{words(part.text)}**" if part.strong else code(part.text)
     return f"${safe(Latex()(part))}$"  # type: ignore[arg-type]
 
 

@@ -8,7 +8,7 @@ from linegraph.body import MASS_CENTER
 from linegraph.domains import ROTATION, TRANSLATION
 from linegraph.elements import Load
 from linegraph.notation.tree import ZERO, Math, Name, Over, Power, Product, Sum, total
-from linegraph.report.document import Block, Code, Formulas, Row, Section, said
+from linegraph.report.document import Block, Code, Formulas, Inline, Row, Section, said
 from linegraph.report.graphs import called
 from linegraph.report.laws import (
     crossed,
@@ -55,13 +55,13 @@ def _arms(subject: Subject) -> tuple[Block, ...]:
         Row(Name("v", ("arm",), bold=True), crossed(spin, arm)),
         Row(moment, total([(False, torque), (False, crossed(head, force))], ordered=False)),
     )
-    text = (
-        "A rigid arm ρ turns with its body, so a rotation appears in translation as a velocity across the "
-        "arm; and a force appears in rotation as a torque: that of an edge about the origin of ground is the "
-        "torque about its own head and the moment of its force there."
-    )
+    text: tuple[Inline, ...] = (
+        "A rigid arm ", arm, " turns with its body, so a rotation appears in translation as a velocity across "
+        "the arm; and a force appears in rotation as a torque: the torque ", moment, " of an edge about the "
+        "origin of ground is the torque ", torque, " about its own head and the moment of its force there."
+    )  # fmt: skip
     arms = [e.name for e in subject.derivation.topology.projection.edges if "/arm" in e.name]
-    blocks: list[Block] = [said(text), Formulas(rows)]
+    blocks: list[Block] = [said(*text), Formulas(rows)]
     if arms and len(arms) <= MOST_EDGES:
         of = [
             Row(vector("v", name), crossed(vector("ω", name.partition("/")[0]), vector("ρ", name)))
@@ -97,7 +97,7 @@ def _motion(subject: Subject) -> tuple[Block, ...]:
     after = (
         "and its mass centre's velocity is the sum of those across arms and joints on the same way, as the "
         "circuit equations of translation say. With the motions of the joints, every across variable is "
-        "linear in the velocities v."
+        "linear in the velocities."
     )
     return (said(text), Formulas(tuple(rows)), said(after))
 
