@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     import random
     from collections.abc import Mapping, Sequence
 
-    from linegraph.derive import Derivation, Numeric
+    from linegraph.derive import Derivation
+    from linegraph.numeric import Numeric
 
     Array = Any
 

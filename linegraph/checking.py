@@ -33,8 +33,9 @@ from linegraph.united import network_entries
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from linegraph.derive import Derivation, Numeric
+    from linegraph.derive import Derivation
     from linegraph.kinematics import KinematicTree
+    from linegraph.numeric import Numeric
     from linegraph.program import Module
     from linegraph.vector import Scalar
 

@@ -57,7 +57,7 @@ def module_of(
         ModelError: a parameter has no value, a closed model cannot be assembled, or it has no function of
             those asked for.
     """
-    parameters = _parameters(derivation)
+    parameters = parameters_of(derivation)
     functions = Functions(derivation, folded or not parameters)
     asked = (*only,) or (*(set(PROGRAMS) - set(ON_REQUEST)), *wanted)
     made = _made(functions, [key for key in PROGRAMS if key in asked])
@@ -286,7 +286,7 @@ ON_REQUEST = ("power",)
 """Emitted only where they are asked for."""
 
 
-def _parameters(derivation: Derivation) -> tuple[Quantity, ...]:
+def parameters_of(derivation: Derivation) -> tuple[Quantity, ...]:
     """The independent parameters; derived ones are computed from them."""
     found = []
     for p in derivation.model.parameters.values():

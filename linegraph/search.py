@@ -15,8 +15,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from linegraph.closure import Chords, Equation
-    from linegraph.derive import Derivation, Numeric
+    from linegraph.derive import Derivation
     from linegraph.kinematics import Closure, KinematicTree
+    from linegraph.numeric import Numeric
 
 TRIES = 24
 STEPS = 50

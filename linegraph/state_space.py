@@ -164,6 +164,65 @@ def state_space(
     return StateSpace(*names, A, B, C, D, E, F, defaults)
 
 
+def linearised(
+    equations: tuple[Sequence[Expr], Expr, Expr],
+    states: tuple[Sequence[Expr], Sequence[Expr]],
+    at: Mapping[Expr, Expr],
+    inputs: Sequence[Expr],
+    slopes: Mapping[Expr, Expr],
+    outputs: Mapping[str, Expr],
+    defaults: Mapping[str, float],
+) -> StateSpace:
+    """The matrices for small deviations from a point where nothing accelerates.
+
+    Args:
+        equations: q̇, M and Q - h, with ``M v̇ = Q - h``.
+        states: the symbols q and v.
+        at: the value of every state and input.
+        inputs: symbols, without derivatives of other inputs.
+        slopes: the symbol of the derivative of each input that has one.
+        outputs: expressions by name.
+        defaults: the parameters' own values.
+
+    Raises:
+        ModelError: v̇ is not zero there, or the time stands in the equations.
+    """
+    rates, mass, right = equations
+    q, v = states
+    point = {symbol: sympy.sympify(value, strict=True) for symbol, value in at.items()}
+    if sympy.Symbol("t") in (mass.free_symbols | right.free_symbols) - set(point):
+        raise ModelError(
+            "linearise", "the equations depend on the time: no point is an equilibrium"
+        )
+    for name, residual in zip(v, right.subs(point), strict=True):
+        if not _vanishes(residual):
+            problem = (
+                f"{name} does not stay as it is there: Q - h = {sympy.simplify(residual)}. Give the values "
+                "of an equilibrium, those of inputs too"
+            )
+            raise ModelError("linearise", problem)
+    known = [*q, *v, *inputs, *slopes.values()]
+
+    def small(expressions: Sequence[Expr]) -> Expr:
+        column = sympy.Matrix(list(expressions))
+        return (column.jacobian(sympy.Matrix(known)).subs(point) * sympy.Matrix(known)).expand()
+
+    accelerations = mass.subs(point).LUsolve(small(right))
+    moved = {name: small([y])[0] for name, y in outputs.items()}
+    changes = [*small(rates), *accelerations]
+    return state_space([*q, *v], changes, inputs, slopes, moved, defaults)
+
+
+def _vanishes(residual: Expr) -> bool:
+    """Whether an expression is zero, floats as far as they are exact."""
+    found = sympy.simplify(residual)
+    if found == 0:
+        return True
+    terms = sympy.Add.make_args(residual)
+    size = sum(abs(term) for term in terms)
+    return bool(found.is_number and size.is_number and abs(found) <= 1e-12 * size)
+
+
 def _read(matrix: Expr, i: int, name: str, expression: Expr, variables: Sequence[Expr]) -> None:
     """One row: the slopes along all variables."""
     whole = sympy.sympify(expression, strict=True)

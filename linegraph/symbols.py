@@ -10,77 +10,161 @@ import sympy
 from linegraph import orthogonality
 from linegraph.checks import nearest
 from linegraph.closure import Chords, equations
+from linegraph.coriolis import coriolis_matrix, gradient_along
 from linegraph.errors import ModelError
+from linegraph.expression import Dag
 from linegraph.inverse_scheme import InverseScheme
+from linegraph.linear import linearise, state_space_of
 from linegraph.loads import Applied, applied, efforts
+from linegraph.mass_matrix import mass_matrix
 from linegraph.observation import observed
 from linegraph.paper import PaperMatrices, paper_matrices
 from linegraph.paper_print import PrintedMatrices, printed_matrices
 from linegraph.parameters import valued
 from linegraph.scope import relations
-from linegraph.state_space import StateSpace, state_space
-from linegraph.sympy_walk import Expr, Sympy, evaluate, to_sympy
+from linegraph.simplification import BUDGET, Simplifier
+from linegraph.symbol_names import MULTIPLIERS, symbol_names
+from linegraph.sympy_walk import Expr, Sympy
 from linegraph.united import exchange_at, network_entries, united_mass_matrix
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from linegraph.derive import Derivation
+    from linegraph.differentiation import Symbol
     from linegraph.exchange import Exchange
     from linegraph.kinematics import KinematicTree
+    from linegraph.state_space import StateSpace
+    from linegraph.vector import Scalar
 
 
 class Symbolic:
-    """A derivation's equations as sympy objects.
+    """A derivation's equations as sympy objects, in closed form.
 
     Coordinates are written as the joints' names; velocities as ``name_dot``, or by their own names
-    (``root_wx``) where v is not the derivative of q.
+    (``root_wx``) where v is not the derivative of q; accelerations as ``a_name``. Everything is derived when
+    it is first asked for.
 
     Attributes:
-        q, v, u: column matrices of symbols.
+        q, v, a, u: column matrices of symbols; `multipliers` are λ.
+        names: of all symbols, by argument.
+        simplifier: what writes the closed forms.
     """
 
-    def __init__(self, derivation: Derivation) -> None:
-        """Derive over sympy; nothing is simplified until asked for."""
+    def __init__(
+        self,
+        derivation: Derivation,
+        level: str = "full",
+        budget: int = BUDGET,
+        progress: Callable[[str], None] | None = None,
+    ) -> None:
+        """Derive over a DAG, to be written as sympy expressions.
+
+        Args:
+            derivation: of what.
+            level: none, fast or full; see `simplification`.
+            budget: how many products of terms a quantity may take.
+            progress: told what is being simplified.
+        """
         self._derivation = derivation
         self._model = derivation.model
-        positions, rates, inputs = _names(derivation.structure, derivation.model.parameters)
-        network = derivation.formulation.network
-        loop = () if network is None else network.loop_names
-        self.algebra = Sympy({"q": positions, "v": rates, "u": inputs, "loop": loop})
-        declared = derivation.model.parameters.values()
-        self._parameters = valued(declared, self.algebra, lambda p: sympy.Symbol(p.name))
-        self.tree: KinematicTree = derivation.tree(self.algebra, self._parameters)
-        self.u = sympy.Matrix([sympy.Symbol(name) for name in inputs])
-        self.q = sympy.Matrix([sympy.Symbol(name) for name in positions])
-        self.v = sympy.Matrix([sympy.Symbol(name) for name in rates])
+        self.names = symbol_names(derivation)
+        self._sympy = Sympy(self.names)
+        self.dag = Dag()
+        self._parameters = self._valued(self.dag)
+        self.tree: KinematicTree = derivation.tree(self.dag, self._parameters)
+        self.simplifier = Simplifier(self._named, level, budget, progress)
+        self.q, self.v, self.a, self.u, self.multipliers = map(
+            self._column, ("q", "v", "a", "u", MULTIPLIERS)
+        )
+
+    def _valued(self, algebra: Any) -> dict[str, Scalar]:
+        declared = self._model.parameters.values()
+        return valued(declared, algebra, lambda p: algebra.symbol("p", p.name))
+
+    def _named(self, symbol: Symbol) -> Expr:
+        return self._sympy.symbol(*symbol)
+
+    def _column(self, argument: str) -> Expr:
+        names = self.names[argument]
+        return sympy.Matrix(len(names), 1, [sympy.Symbol(name) for name in names])
+
+    def _of_dag(self, argument: str) -> tuple[Scalar, ...]:
+        return tuple(self.dag.symbol(argument, k) for k in range(len(self.names[argument])))
+
+    @cached_property
+    def _state(self) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
+        return self._of_dag("q"), self._of_dag("v")
 
     @cached_property
     def _arms(self) -> list[orthogonality.Arm]:
-        return orthogonality.arms(self.tree, self.algebra, list(self.q), list(self.v))
+        return orthogonality.arms(self.tree, self.dag, *self._state)
+
+    def _matrix(self, what: str, rows: Sequence[Sequence[Scalar]], columns: int = 1) -> Expr:
+        """The closed forms of a matrix."""
+        found = self.simplifier.all([x for row in rows for x in row], what)
+        return sympy.Matrix(len(rows), columns, found)
+
+    def _closed_column(self, what: str, entries: Iterable[Scalar]) -> Expr:
+        return self._matrix(what, [[x] for x in entries])
+
+    # -- the equations of motion
 
     @cached_property
     def mass_matrix(self) -> Expr:
-        """M(q) as a sympy Matrix, simplified entry by entry."""
-        entries = network_entries(self._exchange, self.algebra)
-        rows = united_mass_matrix(self.tree, self.algebra, self._arms, entries)
-        return sympy.Matrix(rows).applyfunc(simplified)
+        """M(q) as a sympy Matrix."""
+        return self._matrix("mass matrix", self._mass, len(self.v))
 
     @cached_property
     def bias(self) -> Expr:
-        """h(q, v) as a sympy column Matrix, simplified entry by entry."""
+        """h(q, v) as a sympy column Matrix."""
         rows = orthogonality.inverse_dynamics(
-            self.tree, self.algebra, self._arms, applied=self._applied
+            self.tree, self.dag, self._arms, applied=self._applied
         )
-        return sympy.Matrix(rows).applyfunc(simplified)
+        return self._closed_column("bias", rows)
 
     @cached_property
     def forces(self) -> Expr:
         """Q(q, v, u) as a sympy column Matrix: efforts, and all that inputs drive."""
         acting = self._acted(driven=True)
-        active = orthogonality.generalised_forces(self.tree, self.algebra, self._arms, acting)
-        found = efforts(self.tree, self.algebra, self._chords, active)
-        return sympy.Matrix(found).applyfunc(simplified)
+        active = orthogonality.generalised_forces(self.tree, self.dag, self._arms, acting)
+        return self._closed_column("forces", efforts(self.tree, self.dag, self._chords, active))
+
+    def equations(self) -> list[Expr]:
+        """The equations of motion, row by row: ``M v̇ + h = Q + J^T λ``, and with constraints ``J v̇ = γ``."""
+        left = self.mass_matrix * self.a + self.bias
+        right = self.forces
+        if not self.tree.closed:
+            return _rows(left, right)
+        reactions = self.constraint_jacobian.T * self.multipliers
+        jacobian = self.constraint_jacobian * self.a
+        return _rows(left, right + reactions) + _rows(jacobian, self.constraint_bias)
+
+    @cached_property
+    def coriolis_matrix(self) -> Expr:
+        """C(q, v) of the bodies: ``C v`` is what of h is quadratic in v, and ``Ṁ - 2C`` is skew.
+
+        Entries of networks' states are zero.
+        """
+        size = self.tree.layout.mechanical
+        mass = [row[:size] for row in mass_matrix(self.tree, self.dag, self._arms)[:size]]
+        bias = orthogonality.inverse_dynamics(self.tree, self.dag, self._arms)[:size]
+        rows = coriolis_matrix(self.dag, mass, bias, self._rates)
+        found = sympy.zeros(len(self.v))
+        found[:size, :size] = self._matrix("Coriolis matrix", rows, size)
+        return found
+
+    @cached_property
+    def gravity(self) -> Expr:
+        """g(q) as a column Matrix: what of h weight makes, the gradient of its potential."""
+        _, potential = orthogonality.energy(self.tree, self.dag, self._arms)
+        rows = gradient_along(self.dag, potential, self._rates, len(self.v))
+        return self._closed_column("gravity", rows)
+
+    @cached_property
+    def coordinate_rates(self) -> Expr:
+        """q̇ = N(q) v as a column Matrix."""
+        return self._closed_column("coordinate rates", self._rates)
 
     @cached_property
     def rates(self) -> Expr:
@@ -89,90 +173,88 @@ class Symbolic:
         Raises:
             ModelError: there are constraints.
         """
-        if self.tree.closed:
-            raise ModelError(
-                "rates", "there are constraints; their multipliers have no closed form"
-            )
-        rows = united_mass_matrix(
-            self.tree, self.algebra, self._arms, network_entries(self._exchange, self.algebra)
-        )
+        self.require_open("rates")
         right = self.forces - self.bias
-        return sympy.Matrix(rows).LUsolve(right).applyfunc(sympy.simplify)
+        return self.mass_matrix.LUsolve(right).applyfunc(sympy.simplify)
+
+    def require_open(self, what: str) -> None:
+        """Refuse what constraints do not allow."""
+        if self.tree.closed:
+            raise ModelError(what, "there are constraints; their multipliers have no closed form")
+
+    @cached_property
+    def energy(self) -> tuple[Expr, ...]:
+        """Kinetic and potential energy, that of springs included; then what networks store, if any."""
+        kinetic, potential = orthogonality.energy(self.tree, self.dag, self._arms)
+        found = [kinetic, potential + self._applied.potential]
+        if self._exchange is not None:
+            found.append(self._exchange.energy())
+        return tuple(self.simplifier.all(found, "energy"))
+
+    @property
+    def kinetic_energy(self) -> Expr:
+        """½ v^T M v of the bodies, and what prescribed motions add."""
+        return self.energy[0]
+
+    @property
+    def potential_energy(self) -> Expr:
+        """The potential energy of weight and springs."""
+        return self.energy[1]
 
     @cached_property
     def outputs(self) -> dict[str, Expr]:
         """What the model asks for by name; what depends on v̇ has it put in."""
-        state = (tuple(self.q), tuple(self.v))
         found, _ = observed(
             self._model,
             self.tree,
-            self.algebra,
+            self.dag,
             self._parameters,
             self._chords,
-            state,
+            self._state,
             self._scheme,
         )
         names = [output.name for output in self._model.outputs]
         known = set(self.a)
-        expressions = [sympy.sympify(x, strict=True) for x in found]
+        expressions = self.simplifier.all(found, "outputs")
         if any(x.free_symbols & known for x in expressions):
             solved = dict(zip(self.a, self.rates, strict=True))
-            expressions = [x.subs(solved) for x in expressions]
-        return dict(zip(names, map(sympy.simplify, expressions), strict=True))
+            expressions = [sympy.simplify(x.subs(solved)) for x in expressions]
+        return dict(zip(names, expressions, strict=True))
 
     @cached_property
     def state_space(self) -> StateSpace:
-        """A, B, C, D of a linear system; its outputs are the model's, or all states where it has none.
+        """A, B, C, D of a linear system; see `linear`."""
+        return state_space_of(self)
 
-        Raises:
-            ModelError: it is not linear.
-        """
-        if self.tree.network is not None:
-            self.tree.network.require_linear()
-        steep = {u: sympy.Symbol(f"{u}_rate") for u in self.u}
-        slopes = {u: rate for u, rate in steep.items() if rate in set(self.u)}
-        inputs = [u for u in self.u if u not in slopes.values()]
-        states = [*self.q, *self.v]
-        outputs = self.outputs or {str(x): x for x in states}
-        defaults = {
+    def linearise(self, at: Mapping[Any, Any] | None = None) -> StateSpace:
+        """A, B, C, D for small deviations from an equilibrium or a steady motion; see `linear`."""
+        return linearise(self, at or {})
+
+    @property
+    def defaults(self) -> dict[str, float]:
+        """The parameters' own values."""
+        return {
             p.name: float(p.value)
             for p in self._model.parameters.values()
             if p.value is not None and not p.derived
         }
-        velocities = orthogonality.coordinate_rates(
-            self.tree, self.algebra, list(self.q), list(self.v)
-        )
-        return state_space(states, [*velocities, *self.rates], inputs, slopes, outputs, defaults)
 
-    @cached_property
-    def _exchange(self) -> Exchange | None:
-        """The networks."""
-        chords = Chords(self.tree, self.algebra, self._arms, self._parameters)
-        state = (tuple(self.q), tuple(self.v))
-        return exchange_at(self._model, self.tree, self.algebra, self._parameters, chords, state)
+    # -- constraints and edges
 
     @cached_property
     def constraints(self) -> Expr:
         """φ(q) as a column Matrix: zero where all loops are closed."""
-        return sympy.Matrix(self._chords.position()).applyfunc(simplified)
+        return self._closed_column("constraints", self._chords.position())
 
     @cached_property
     def constraint_jacobian(self) -> Expr:
         """J(q), constraints x velocities; the multipliers' names are in `multipliers`."""
-        rows = self._chords.jacobian()
-        return sympy.Matrix(len(rows), len(self.v), [x for row in rows for x in row]).applyfunc(
-            simplified
-        )
+        return self._matrix("constraint Jacobian", self._chords.jacobian(), len(self.v))
 
     @cached_property
     def constraint_bias(self) -> Expr:
         """γ of J v̇ = γ as a column Matrix."""
-        return sympy.Matrix(self._chords.bias()).applyfunc(simplified)
-
-    @property
-    def multipliers(self) -> Expr:
-        """λ as a column Matrix of symbols: the through variables of the chords."""
-        return sympy.Matrix([sympy.Symbol(e.multiplier.name) for e in equations(self.tree)])
+        return self._closed_column("constraint bias", self._chords.bias())
 
     def reaction(self, joint: str) -> tuple[Expr, Expr]:
         """Force and torque that a joint exerts on its head, one edge alone, v̇ as symbols ``a_name``.
@@ -184,9 +266,7 @@ class Symbolic:
         """
         if joint not in self.tree.ends:
             raise ModelError(f'joint "{joint}"', f"is not there; {nearest(joint, self.tree.ends)}")
-        wrench = self._scheme.reaction(joint)
-        force, torque = (sympy.Matrix(part).applyfunc(simplified) for part in wrench)
-        return force, torque
+        return self._both(f"reaction of {joint}", *self._scheme.reaction(joint))
 
     def across(self, edge: str) -> tuple[Expr, Expr]:
         """Velocity and angular velocity across an edge, in ground axes.
@@ -197,54 +277,52 @@ class Symbolic:
         found = self._scheme.across()
         if edge not in found:
             raise ModelError(f'edge "{edge}"', f"is not there; {nearest(edge, found)}")
-        linear, angular = (sympy.Matrix(part).applyfunc(simplified) for part in found[edge])
-        return linear, angular
+        return self._both(f"motion across {edge}", *found[edge])
+
+    def _both(
+        self, what: str, linear: Sequence[Scalar], angular: Sequence[Scalar]
+    ) -> tuple[Expr, Expr]:
+        entries = self.simplifier.all([*linear, *angular], what)
+        return sympy.Matrix(entries[:3]), sympy.Matrix(entries[3:])
+
+    # -- what they are made of
 
     @cached_property
-    def a(self) -> Expr:
-        """v̇ as a column Matrix of symbols."""
-        return sympy.Matrix([sympy.Symbol(f"a_{q.name}") for q in self.tree.velocities])
+    def _mass(self) -> list[list[Scalar]]:
+        entries = network_entries(self._exchange, self.dag)
+        return united_mass_matrix(self.tree, self.dag, self._arms, entries)
+
+    @cached_property
+    def _rates(self) -> list[Scalar]:
+        return orthogonality.coordinate_rates(self.tree, self.dag, *self._state)
+
+    @cached_property
+    def _exchange(self) -> Exchange | None:
+        """The networks."""
+        chords = Chords(self.tree, self.dag, self._arms, self._parameters)
+        return exchange_at(self._model, self.tree, self.dag, self._parameters, chords, self._state)
 
     @cached_property
     def _chords(self) -> Chords:
-        state = (tuple(self.q), tuple(self.v))
-        rates = orthogonality.coordinate_rates(self.tree, self.algebra, *state)
-        found = relations(self._model, self.tree, self.algebra, self._parameters, state, rates)
-        return Chords(self.tree, self.algebra, self._arms, self._parameters, found)
+        found = relations(
+            self._model, self.tree, self.dag, self._parameters, self._state, self._rates
+        )
+        return Chords(self.tree, self.dag, self._arms, self._parameters, found)
 
     @cached_property
     def _scheme(self) -> InverseScheme:
-        multipliers = zip(equations(self.tree), self.multipliers, strict=True)
+        multipliers = self._of_dag(MULTIPLIERS)
         return InverseScheme(
             self._derivation,
             self.tree,
-            self.algebra,
+            self.dag,
             self._parameters,
             self._arms,
             self._chords,
-            (tuple(self.q), tuple(self.v)),
-            tuple(self.a),
-            list(multipliers),
+            self._state,
+            self._of_dag("a"),
+            list(zip(equations(self.tree), multipliers, strict=True)),
         )
-
-    @cached_property
-    def paper_matrices(self) -> PaperMatrices:
-        """P, H, C, S, K and the literal (13)-(15) of the paper, over sympy and not simplified."""
-        return paper_matrices(self.tree, self.algebra, list(self.q), list(self.v))
-
-    @cached_property
-    def energy(self) -> tuple[Expr, ...]:
-        """Kinetic and potential energy, that of springs included; then what networks store, if any."""
-        kinetic, potential = orthogonality.energy(self.tree, self.algebra, self._arms)
-        found = [kinetic, potential + self._applied.potential]
-        if self._exchange is not None:
-            found.append(self._exchange.energy())
-        return tuple(simplified(energy) for energy in found)
-
-    @cached_property
-    def printed_matrices(self) -> PrintedMatrices:
-        """All matrices of the paper in its own form of 2n - 1 chords, over sympy and not simplified."""
-        return printed_matrices(self.tree, self.algebra, list(self.q), list(self.v))
 
     @cached_property
     def _applied(self) -> Applied:
@@ -252,54 +330,33 @@ class Symbolic:
         return self._acted(driven=False)
 
     def _acted(self, *, driven: bool) -> Applied:
-        state = (tuple(self.q), tuple(self.v))
         return applied(
             self._model,
             self.tree,
-            self.algebra,
+            self.dag,
             self._parameters,
             self._arms,
-            *state,
+            *self._state,
             driven=driven,
         )
 
+    # -- the paper's matrices
 
-def _names(
-    tree: KinematicTree, parameters: Mapping[str, Any]
-) -> tuple[list[str], list[str], list[str]]:
-    """What positions, velocities and inputs are called; no two alike.
+    @cached_property
+    def _sympy_tree(self) -> KinematicTree:
+        return self._derivation.tree(self._sympy, self._valued(self._sympy))
 
-    Raises:
-        ModelError: a name stands for two things.
-    """
-    positions = [quantity.name for quantity in tree.positions]
-    rates = [quantity.name for quantity in tree.velocities]
-    rates = [f"{name}_dot" if name in positions else name for name in rates]
-    inputs = [
-        f"u_{quantity.name}" if quantity.name in (*positions, *rates) else quantity.name
-        for quantity in tree.inputs
-    ]
-    for name in parameters:
-        if name in positions or name in rates:
-            raise ModelError(f'parameter "{name}"', "has the name of a coordinate; rename one")
-    for name in rates:
-        if name in positions:
-            problem = "is the name of a coordinate and of a rate; rename a joint"
-            raise ModelError(f'coordinate "{name}"', problem)
-    return positions, rates, inputs
+    @cached_property
+    def paper_matrices(self) -> PaperMatrices:
+        """P, H, C, S, K and the literal (13)-(15) of the paper, over sympy and not simplified."""
+        return paper_matrices(self._sympy_tree, self._sympy, list(self.q), list(self.v))
+
+    @cached_property
+    def printed_matrices(self) -> PrintedMatrices:
+        """All matrices of the paper in its own form of 2n - 1 chords, over sympy and not simplified."""
+        return printed_matrices(self._sympy_tree, self._sympy, list(self.q), list(self.v))
 
 
-def simplified(expression: Expr) -> Expr:
-    """Products multiplied out, sin^2 + cos^2 merged, common factors collected."""
-    whole = _whole(sympy.sympify(expression, strict=True))
-    return _whole(sympy.factor_terms(sympy.trigsimp(sympy.expand(whole))))
-
-
-def _whole(expression: Expr) -> Expr:
-    """Floats with integer values as integers: 2.0 x is 2 x to a reader."""
-    return expression.replace(
-        lambda e: e.is_Float and float(e).is_integer(), lambda e: sympy.Integer(int(e))
-    )
-
-
-__all__ = ["Expr", "Symbolic", "Sympy", "evaluate", "simplified", "to_sympy"]
+def _rows(left: Expr, right: Expr) -> list[Expr]:
+    """Equations, never evaluated to true or false."""
+    return [sympy.Eq(a, b, evaluate=False) for a, b in zip(left, right, strict=True)]

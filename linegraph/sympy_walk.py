@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import sympy
 
+from linegraph.differentiation import Replay
 from linegraph.errors import ModelError
-from linegraph.expression import Dag, Node
 from linegraph.functions import ARITY
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from linegraph.algebra import Algebra
+    from linegraph.differentiation import Symbol
     from linegraph.vector import Scalar
 
 Expr: TypeAlias = Any
@@ -21,6 +23,8 @@ Expr: TypeAlias = Any
 
 RENAMED = {"abs": "Abs", "min": "Min", "max": "Max"}
 """Functions that sympy calls otherwise."""
+
+OURS = {theirs: ours for ours, theirs in RENAMED.items()}
 
 
 class Sympy:
@@ -76,8 +80,10 @@ def evaluate(expression: Expr, algebra: Algebra, parameters: Mapping[str, Scalar
 
 
 def number(e: Expr) -> Scalar:
-    """A sympy number as an int where exact, else as a float."""
-    return int(e) if e.is_Integer else float(e)
+    """A sympy number as an int or a fraction where exact, else as a float."""
+    if e.is_Integer:
+        return int(e)
+    return Fraction(e.p, e.q) if e.is_Rational else float(e)
 
 
 def _apply(e: Expr, parts: list[Scalar], algebra: Algebra) -> Scalar:
@@ -88,15 +94,12 @@ def _apply(e: Expr, parts: list[Scalar], algebra: Algebra) -> Scalar:
         return _fold(lambda a, b: a * b, parts)
     if e.is_Pow:
         return power(parts[0], e.exp, algebra)
-    name = _OURS.get(e.func.__name__, e.func.__name__)
+    name = OURS.get(e.func.__name__, e.func.__name__)
     if name in ("min", "max"):
         return _fold(lambda a, b: algebra.function(name, a, b), parts)
     if ARITY.get(name) == len(parts):
         return algebra.function(name, *parts)
     raise ModelError("", f"{name}(...) in {e} has no counterpart in emitted code")
-
-
-_OURS = {theirs: ours for ours, theirs in RENAMED.items()}
 
 
 def power(base: Scalar, exponent: Expr, algebra: Algebra) -> Scalar:
@@ -119,42 +122,14 @@ def power(base: Scalar, exponent: Expr, algebra: Algebra) -> Scalar:
     return 1 / result
 
 
-def to_sympy(node: Scalar, dag: Dag, names: Mapping[str, Iterable[str]]) -> Expr:
-    """A DAG node as a sympy expression, intermediates substituted."""
-    algebra = Sympy(names)
-    known: dict[int, Expr] = {}
-    pending = [node]
-    while pending:
-        top = pending[-1]
-        if not isinstance(top, Node) or top.index in known:
-            pending.pop()
-            continue
-        waiting = [x for x in (top.a, top.b) if isinstance(x, Node) and x.index not in known]
-        if waiting and top.op != "symbol":
-            pending += waiting
-            continue
-        known[top.index] = _shown(top, known, algebra)
-        pending.pop()
-    return known[node.index] if isinstance(node, Node) else sympy.sympify(node, strict=True)
+def to_sympy(x: Scalar, symbol: Callable[[Symbol], Expr]) -> Expr:
+    """A scalar of a DAG as a sympy expression, intermediates substituted.
 
-
-def _shown(node: Node, known: Mapping[int, Expr], algebra: Sympy) -> Expr:
-    def operand(x: Any) -> Expr:
-        return known[x.index] if isinstance(x, Node) else sympy.sympify(x, strict=True)
-
-    if node.op == "symbol":
-        return algebra.symbol(node.a, node.b)
-    actions: dict[str, Callable[..., Expr]] = {
-        "neg": lambda a: -a,
-        "add": lambda a, b: a + b,
-        "sub": lambda a, b: a - b,
-        "mul": lambda a, b: a * b,
-        "div": lambda a, b: a / b,
-    }
-    operands = [operand(x) for x in (node.a, node.b) if x is not None]
-    if node.op in actions:
-        return actions[node.op](*operands)
-    return algebra.function(node.op, *operands)
+    Args:
+        x: a node or a number.
+        symbol: what a symbol is written as, given its argument and place.
+    """
+    return sympy.sympify(Replay(Sympy(), symbol)(x), strict=True)
 
 
 def _fold(action: Callable[[Scalar, Scalar], Scalar], parts: list[Scalar]) -> Scalar:

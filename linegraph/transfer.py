@@ -18,8 +18,8 @@ from linegraph.vector import Matrix, dot, times, transpose
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from linegraph.derive import Numeric
     from linegraph.kinematics import KinematicTree, Link
+    from linegraph.numeric import Numeric
 
 State = tuple[list[float], list[float]]
 

@@ -16,13 +16,15 @@ import numpy as np
 
 from linegraph import Model, derive, orthogonality
 from linegraph.closure import equations
-from linegraph.derive import Derivation, Numeric
 from linegraph.inverse_scheme import InverseScheme
 from linegraph.loads import efforts
+from linegraph.numeric import Numeric
 from linegraph.parameters import valued
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+
+    from linegraph.derive import Derivation
 
 Array = Any
 STEP = 1e-30

@@ -22,9 +22,9 @@ from linegraph import Derivation, Model, derive, orthogonality
 from linegraph import mass_matrix as columns_of_mass
 from linegraph.algebra import Floats
 from linegraph.articulated import forward_dynamics
-from linegraph.derive import Numeric
 from linegraph.expression import Dag
 from linegraph.factorization import solve
+from linegraph.numeric import Numeric
 from linegraph.paper import paper_matrices
 from linegraph.programs import module_of
 

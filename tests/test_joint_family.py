@@ -22,10 +22,10 @@ from spec_models import model_of, numbers, rows
 
 import linegraph as lg
 from linegraph.algebra import Floats
-from linegraph.derive import Numeric
 from linegraph.emission import module_for, render
 from linegraph.joints import JOINTS, Compound, Helical, Spherical, Universal
 from linegraph.joints.spherical import SEQUENCES
+from linegraph.numeric import Numeric
 from linegraph.paper import paper_matrices
 from linegraph.rotation import Turn
 from linegraph.words import BodyHandle

@@ -27,7 +27,7 @@ from linegraph.paper_print import PrintedMatrices, equations, printed_matrices
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from linegraph.derive import Numeric
+    from linegraph.numeric import Numeric
 
 TOLERANCE = 1e-12
 TURNING = ("revolute", "universal", "spherical xyz", "spherical zxz")

@@ -1,0 +1,151 @@
+"""Functions of a derivation that compute: the emitted Python, loaded without a file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib.abc import SourceLoader
+from importlib.util import module_from_spec, spec_from_loader
+from typing import TYPE_CHECKING, Any
+
+import sympy
+
+import codegen
+from linegraph.checks import nearest
+from linegraph.errors import ModelError
+from linegraph.program import Module, Result, reads
+from linegraph.programs import PROGRAMS, module_of, parameters_of
+from linegraph.shared import Functions
+from linegraph.symbol_names import symbol_names
+from linegraph.sympy_walk import evaluate
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from linegraph.derive import Derivation
+
+NAME = "expression"
+"""The function that computes a sympy expression."""
+
+
+@dataclass(frozen=True)
+class Function:
+    """An emitted function, ready to be called.
+
+    Attributes:
+        name: its own.
+        arguments: the names of what it takes.
+        model: the name of the model.
+        source: the Python it is from.
+        module: the same, loaded.
+    """
+
+    name: str
+    arguments: tuple[str, ...]
+    model: str
+    source: str
+    module: Any
+    shape: tuple[int, ...] | None = None
+
+    def __call__(self, *given: Any, parameters: Mapping[str, float] | None = None) -> Any:
+        """Call it with one state, or with many: arrays whose last axis is that of one.
+
+        Args:
+            given: q, v, ... as `arguments` lists them.
+            parameters: values in place of the model's own.
+
+        Raises:
+            ModelError: there are more or fewer arguments, or no such parameter.
+        """
+        if len(given) != len(self.arguments):
+            problem = f"takes {', '.join(self.arguments) or 'nothing'}; got {len(given)} arguments"
+            raise ModelError(f'function "{self.name}"', problem)
+        values = self._parameters(parameters or {})
+        found = getattr(self.module, self.name)(*values, *given)
+        return found[..., 0] if self.shape == () else found
+
+    def _parameters(self, given: Mapping[str, float]) -> tuple[Any, ...]:
+        own = getattr(self.module, "DEFAULT_PARAMETERS", None)
+        known = () if own is None else [*own._values()]
+        for name in given:
+            if name not in known:
+                raise ModelError(f'parameter "{name}"', f"is not there; {nearest(name, known)}")
+        return () if own is None else (own.replace(**given),)
+
+    def __repr__(self) -> str:
+        """Its name and arguments."""
+        return f"<function {self.name}({', '.join(self.arguments)}) of {self.model}>"
+
+
+def function(derivation: Derivation, what: Any) -> Function:
+    """An emitted function by its name, or one that computes a sympy expression.
+
+    Raises:
+        ModelError: there is no such function, or a symbol is not of this derivation.
+    """
+    name = codegen.naming.identifier(derivation.model.name)
+    if not isinstance(what, str):
+        return _of_expression(derivation, name, what)
+    folded = not derivation.model.parameters
+    only = (what,) if what in PROGRAMS else ()
+    module = module_of(derivation, name, folded=folded, about=(), only=only)
+    known = [program.name for program in module.programs]
+    if what not in known:
+        raise ModelError(f'function "{what}"', f"is not there; {nearest(what, known)}")
+    return _loaded(derivation, module, what)
+
+
+def _of_expression(derivation: Derivation, name: str, what: Any) -> Function:
+    """The function of an expression or a matrix: of q, v, u, a as far as it depends on them."""
+    functions = Functions(derivation, not derivation.model.parameters)
+    whole = sympy.sympify(what, strict=True)
+    dag, tree = functions.dag, functions.tree
+    symbols = {
+        symbol: dag.symbol(argument, k)
+        for argument, names in symbol_names(derivation).items()
+        for k, symbol in enumerate(names)
+    }
+    symbols |= {**functions.values, "t": dag.symbol("t")}
+    shape = tuple(whole.shape) if isinstance(whole, sympy.MatrixBase) else ()
+    try:
+        entries = tuple(evaluate(e, dag, symbols) for e in (whole if shape else [whole]))
+    except ModelError as error:
+        problem = f"{error}; it is no symbol of this derivation" if error.thing else str(error)
+        raise ModelError("expression", problem) from None
+    result = Result("values", shape or (1,), entries, "an expression of the model's symbols")
+    given = tuple(argument for argument in functions.sizes if reads(argument, (result,)))
+    program = functions.program(NAME, "An expression of the model's symbols.", given, (result,))
+    state = (tree.positions, tree.velocities, tree.inputs)
+    parameters = parameters_of(derivation)
+    time = derivation.model.depends_on_time
+    module = Module(name, (), *state, parameters, time, (program,))
+    return _loaded(derivation, module, NAME, shape)
+
+
+def _loaded(
+    derivation: Derivation, module: Module, name: str, shape: tuple[int, ...] | None = None
+) -> Function:
+    (source,) = codegen.render(module, "python").values()
+    program = next(p for p in module.programs if p.name == name)
+    arguments = tuple(a.name for a in program.arguments if a.name != "p")
+    loaded = _Loader(source).loaded(module.name)
+    return Function(name, arguments, derivation.model.name, source, loaded, shape)
+
+
+class _Loader(SourceLoader):
+    """Loads a module from its text."""
+
+    def __init__(self, source: str) -> None:
+        self._source = source
+
+    def get_filename(self, fullname: str) -> str:
+        return f"<{fullname}, emitted>"
+
+    def get_data(self, path: str) -> bytes:
+        return self._source.encode("ascii")
+
+    def loaded(self, name: str) -> Any:
+        specification = spec_from_loader(name, self)
+        assert specification is not None
+        module = module_from_spec(specification)
+        self.exec_module(module)
+        return module

@@ -1,0 +1,316 @@
+"""From terms to what a book prints: collected in rates, inertias grouped, common factors out.
+
+1. What stands with each product of rates, accelerations, inputs or multipliers is put together, and
+products with the same coefficient share it: m l sin b (2 a' b' + b'^2).
+2. Within a coefficient, what stands with each product of functions of angles is put together:
+(J + m l^2) sin^2 a.
+3. The factor that most terms share is taken out, and so on inwards. A short sum that is a product of sums
+is written as one.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import cached_property, reduce
+from math import gcd
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import sympy
+
+from linegraph.simplification.polynomial import (
+    COS,
+    FUNCTION,
+    ROOT,
+    SIN,
+    SYMBOL,
+    Frozen,
+    Harmonic,
+    Ring,
+    Terms,
+    plain,
+    reciprocal,
+    unit,
+)
+from linegraph.sympy_walk import RENAMED, Expr
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from linegraph.differentiation import Symbol
+    from linegraph.expression import Number
+
+MOST_TERMS_AS_PRODUCT = 10
+"""Longer sums are not searched for a product of sums."""
+
+PARAMETERS = "p"
+MOVING = ("v", "a", "u", "lam")
+DIGITS = 12
+"""Sums with floats are proportional if their coefficients agree in so many digits."""
+
+
+class Factor(NamedTuple):
+    """What terms share: a generator of the ring (`kernel` empty), or a sum of terms."""
+
+    place: int
+    kernel: Frozen
+
+
+class Term(NamedTuple):
+    """A number times powers of factors, ascending by place."""
+
+    coefficient: Number
+    factors: tuple[tuple[Factor, int], ...]
+
+
+class Writer:
+    """Writes the terms of a ring as sympy expressions.
+
+    Args:
+        ring: of the terms.
+        symbol: the expression of a symbol, by its argument and place.
+        inner: how the polynomial inside a root, an inverse or a function is written.
+    """
+
+    def __init__(
+        self,
+        ring: Ring,
+        symbol: Callable[[Symbol], Expr],
+        inner: Callable[[Terms], Expr] | None = None,
+    ) -> None:
+        """Nothing is written yet; generators are written once."""
+        self.ring = ring
+        self._symbol = symbol
+        self._inner = inner or self.written
+        self._known: dict[int, Expr] = {}
+
+    def written(self, terms: Terms) -> Expr:
+        """Collected and factored."""
+        coefficients: dict[int, Terms] = {}
+        for term, k in sorted(terms.items()):
+            moving = sum(unit(p, e) for p, e in self.ring.exponents(term) if self.moves(p))
+            coefficients.setdefault(moving, {})[term - moving] = k
+        shared: dict[Any, tuple[Terms, Terms]] = {}
+        for moving, coefficient in coefficients.items():
+            common, rest = self.ring.primitive(coefficient, clear=False)
+            ((outer, k),) = common.items()
+            key = (outer, tuple((t, _rounded(x)) for t, x in sorted(rest.items())), bool(moving))
+            first, members = shared.setdefault(key, (coefficient, {}))
+            own = first[min(first)]
+            members[moving] = plain(coefficient[min(coefficient)] * reciprocal(own))
+        return sympy.Add(*(self._collected(*pair) for pair in shared.values()))
+
+    def _collected(self, coefficient: Terms, moving: Terms) -> Expr:
+        """One coefficient with all that it stands with."""
+        if moving == {0: 1}:
+            return self.nested(self.grouped(coefficient))
+        scale = _denominator(moving.values())
+        scale *= -1 if 2 * sum(x < 0 for x in moving.values()) > len(moving) else 1
+        rates = self.nested(self._terms({t: plain(k * scale) for t, k in moving.items()}))
+        outer = {t: plain(k * reciprocal(scale)) for t, k in coefficient.items()}
+        return self.nested(self.grouped(outer)) * rates
+
+    def expanded(self, terms: Terms) -> Expr:
+        """A plain sum."""
+        return sympy.Add(*(self._product(term) for term in self._terms(terms)))
+
+    # -- factors
+
+    def generator(self, place: int) -> Expr:
+        """A generator as an expression."""
+        if place not in self._known:
+            kind, content = self.ring.generators[place]
+            self._known[place] = self._of(kind, content)
+        return self._known[place]
+
+    def _of(self, kind: str, content: Any) -> Expr:
+        if kind == SYMBOL:
+            return self._symbol(content)
+        if kind in (SIN, COS):
+            return (sympy.sin if kind == SIN else sympy.cos)(self.angle(content))
+        if kind == FUNCTION:
+            name, given = content
+            parts = [self._inner(dict(part)) for part in given]
+            return getattr(sympy, RENAMED.get(name, name))(*parts)
+        inner = self._inner(dict(content))
+        return sympy.sqrt(inner) if kind == ROOT else 1 / inner
+
+    def angle(self, harmonic: Harmonic) -> Expr:
+        """A sum of angles."""
+        parts = [n * self._inner(dict(self.ring.angles[angle])) for angle, n in harmonic]
+        return sympy.Add(*parts)
+
+    def _factor(self, factor: Factor) -> Expr:
+        if factor.kernel:
+            return self.nested(self._terms(dict(factor.kernel)))
+        return self.generator(factor.place)
+
+    @cached_property
+    def _constants(self) -> dict[int, bool]:
+        return {}
+
+    def constant(self, place: int) -> bool:
+        """Whether a generator depends on parameters alone."""
+        if place not in self._constants:
+            kind, content = self.ring.generators[place]
+            if kind == SYMBOL:
+                found = content[0] == PARAMETERS
+            else:
+                found = all(
+                    self.constant(p)
+                    for t in self._within(kind, content)
+                    for p, _ in self.ring.exponents(t)
+                )
+            self._constants[place] = found
+        return self._constants[place]
+
+    def moves(self, place: int) -> bool:
+        """Whether a generator is a rate, an acceleration, an input or a multiplier."""
+        kind, content = self.ring.generators[place]
+        return kind == SYMBOL and content[0] in MOVING
+
+    def _within(self, kind: str, content: Any) -> list[int]:
+        """The terms that stand inside a generator."""
+        if kind in (SIN, COS):
+            return [term for angle, _ in content for term, _ in self.ring.angles[angle]]
+        inner = content[1] if kind == FUNCTION else (content,)
+        return [term for part in inner for term, _ in part]
+
+    # -- terms
+
+    def _terms(self, terms: Terms) -> list[Term]:
+        return [
+            Term(k, tuple((Factor(place, ()), e) for place, e in self.ring.exponents(term)))
+            for term, k in sorted(terms.items())
+        ]
+
+    def grouped(self, terms: Terms) -> list[Term]:
+        """What stands with each product of rates and angles as one factor, where it is a sum."""
+        groups: dict[int, Terms] = {}
+        for term, k in sorted(terms.items()):
+            varying = sum(unit(p, e) for p, e in self.ring.exponents(term) if not self.constant(p))
+            groups.setdefault(varying, {})[term - varying] = k
+        kernels: dict[Any, list[tuple[int, int, Terms, Number]]] = {}
+        for varying, inner in groups.items():
+            common, rest = self.ring.primitive(inner, clear=False)
+            ((shared, k),) = common.items()
+            key = tuple((t, _rounded(x)) for t, x in sorted(rest.items()))
+            kernels.setdefault(key, []).append((varying, shared, rest, k))
+        found: list[Term] = []
+        for members in kernels.values():
+            rest = members[0][2]
+            if len(rest) == 1 or (len(members) == 1 and members[0][0] == 0):
+                whole = [(t + v + o, x * k) for v, o, inner, k in members for t, x in inner.items()]
+                found += self._terms({t: plain(x) for t, x in whole})
+                continue
+            scale = _denominator(rest.values())
+            scale *= -1 if 2 * sum(x < 0 for x in rest.values()) > len(rest) else 1
+            whole_kernel = tuple((t, plain(x * scale)) for t, x in sorted(rest.items()))
+            kernel = Factor(-1, whole_kernel)
+            for varying, outer, _, k in members:
+                own = self._terms({varying + outer: plain(k * reciprocal(scale))})[0]
+                found.append(Term(own.coefficient, ((kernel, 1), *own.factors)))
+        return found
+
+    def nested(self, terms: Sequence[Term]) -> Expr:
+        """Common factors out, then the one that most terms share, and so on."""
+        if not terms:
+            return sympy.Integer(0)
+        if len(terms) == 1:
+            return self._product(terms[0])
+        common = _common(terms)
+        if common:
+            inner = [_divided(term, common) for term in terms]
+            outer = [self._factor(f) ** e for f, e in common]
+            return sympy.Mul(*outer, self.nested(inner))
+        as_product = self._as_product(terms)
+        if as_product is not None:
+            return as_product
+        best = self._most_shared(terms)
+        if best is None:
+            return sympy.Add(*(self._product(term) for term in terms))
+        having = [term for term in terms if best in term.factors]
+        rest = [term for term in terms if best not in term.factors]
+        return sympy.Add(self.nested(having), self.nested(rest))
+
+    def _most_shared(self, terms: Sequence[Term]) -> tuple[Factor, int] | None:
+        """The power that most terms have; of equals a sum, then what varies, then the first."""
+        counts: dict[tuple[Factor, int], int] = {}
+        for term in terms:
+            for power in term.factors:
+                counts[power] = counts.get(power, 0) + 1
+
+        def rank(power: tuple[Factor, int]) -> tuple[Any, ...]:
+            factor, exponent = power
+            varies = factor.kernel or not self.constant(factor.place)
+            return -counts[power], not factor.kernel, not varies, factor, exponent
+
+        shared = [power for power, n in counts.items() if n > 1]
+        return min(shared, key=rank) if shared else None
+
+    def _as_product(self, terms: Sequence[Term]) -> Expr | None:
+        """A short sum as a product of sums."""
+        if not 3 <= len(terms) <= MOST_TERMS_AS_PRODUCT:
+            return None
+        if any(isinstance(term.coefficient, float) for term in terms):
+            return None
+        factors = list(dict.fromkeys(f for term in terms for f, _ in term.factors))
+        if any(e < 0 for term in terms for _, e in term.factors):
+            return None
+        places = {factor: n for n, factor in enumerate(factors)}
+        denominator = _denominator(term.coefficient for term in terms)
+        if not factors:
+            return None
+        rows: dict[tuple[int, ...], int] = {}
+        for term in terms:
+            row = [0] * len(factors)
+            for factor, exponent in term.factors:
+                row[places[factor]] = exponent
+            rows[tuple(row)] = int(term.coefficient * denominator)
+        poly = sympy.Poly.from_dict(rows, *sympy.symbols(f"x:{len(factors)}"))
+        content, parts = poly.factor_list()
+        if len(parts) == 1 and parts[0][1] == 1:
+            return None
+        found = [sympy.Rational(content, denominator) if denominator != 1 else content]
+        for part, exponent in parts:
+            inner = [
+                Term(int(k), tuple((factors[n], e) for n, e in enumerate(row) if e))
+                for row, k in part.terms()
+            ]
+            found.append(self.nested(inner) ** exponent)
+        return sympy.Mul(*found)
+
+    def _product(self, term: Term) -> Expr:
+        return sympy.Mul(number(term.coefficient), *(self._factor(f) ** e for f, e in term.factors))
+
+
+def number(k: Number) -> Expr:
+    """A coefficient as sympy's number."""
+    if isinstance(k, float):
+        return sympy.Float(k)
+    return sympy.Rational(k.numerator, k.denominator)
+
+
+def _rounded(k: Number) -> Number:
+    return float(f"{k:.{DIGITS}e}") if isinstance(k, float) else k
+
+
+def _denominator(numbers: Iterable[Number]) -> int:
+    """The least common denominator of what is exact."""
+    exact = [Fraction(k).denominator for k in numbers if not isinstance(k, float)]
+    return reduce(lambda a, b: a * b // gcd(a, b), exact, 1)
+
+
+def _common(terms: Sequence[Term]) -> tuple[tuple[Factor, int], ...]:
+    """The factors of all terms; negative powers only if all have them."""
+    least = dict(terms[0].factors)
+    for term in terms[1:]:
+        found = dict(term.factors)
+        both = {f: (e, found[f]) for f, e in least.items() if f in found}
+        least = {f: min(e, key=abs) for f, e in both.items() if (e[0] > 0) == (e[1] > 0)}
+    return tuple(least.items())
+
+
+def _divided(term: Term, common: tuple[tuple[Factor, int], ...]) -> Term:
+    least = dict(common)
+    factors = [(f, e - least.get(f, 0)) for f, e in term.factors]
+    return Term(term.coefficient, tuple((f, e) for f, e in factors if e))
