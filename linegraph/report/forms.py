@@ -5,9 +5,10 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from linegraph.errors import ModelError
 from linegraph.notation.plain import Plain
 from linegraph.notation.tree import ONE, ZERO, Grid, Math, Name, Power, Product, product, total
-from linegraph.program import operations_of
+from linegraph.program import Result, operations_of
 from linegraph.report.document import Block, Code, Formulas, Listing, Row, Section, said
 from linegraph.report.intermediates import listed_program
 from linegraph.report.laws import vector
@@ -19,9 +20,14 @@ if TYPE_CHECKING:
 
     from linegraph.report.subject import Subject
 
-SHORT_EQUATIONS, SHORT_CONSTRAINTS, SHORT_REACTIONS = 75, 90, 90
-"""Up to so many operations of the expression graph there are closed forms: of M and h, of φ, J and γ, of all
-reactions."""
+MOST_OPERATIONS = 250
+"""Of more operations of the expression graph than these there are no closed forms: they would be too long."""
+
+MOST_PRODUCTS = 3000
+"""Of more products of two terms than a quantity takes to be put together there is no closed form, either."""
+
+MOST_PRINTED = 3600
+"""Characters of closed forms that a person still reads: of M and h, of φ, J and γ, of all reactions."""
 
 WIDEST_GRID = 72
 """A matrix of more characters than this across is written entry by entry."""
@@ -40,36 +46,57 @@ class Forms:
 
     @cached_property
     def short(self) -> bool:
-        """Whether M and h have a closed form here."""
+        """Whether M and h are written in closed form."""
         f = self._functions
-        return operations_of((f.mass_matrix, f.bias_beside_mass)) <= SHORT_EQUATIONS
+        entries = (*f.mass_matrix.entries, *f.bias_beside_mass.entries)
+        return self._readable(entries, lambda: [self.closed.mass_matrix, self.closed.bias])
 
     @cached_property
     def short_constraints(self) -> bool:
-        """Whether φ, J and γ have one."""
+        """Whether φ, J and γ are."""
         f = self._functions
         entries = [*f.chords.position(), *(x for row in f.jacobian for x in row), *f.chords.bias()]
-        return self._count(entries) <= SHORT_CONSTRAINTS
+        form = self.closed
+        return self._readable(
+            entries, lambda: [form.constraints, form.constraint_jacobian, form.constraint_bias]
+        )
 
     @cached_property
     def short_reactions(self) -> bool:
-        """Whether reactions have one."""
+        """Whether reactions are."""
         names = [joint.name for joint in self._subject.model.joints]
-        entries = [x for n in names for part in self._functions.scheme.reaction(n) for x in part]
-        return self._count(entries) <= SHORT_REACTIONS
+        scheme = self._functions.scheme
+        entries = [x for n in names for part in scheme.reaction(n) for x in part]
+        return self._readable(entries, lambda: [x for n in names for x in self.closed.reaction(n)])
 
-    @staticmethod
-    def _count(entries: Sequence[Any]) -> int:
-        from linegraph.program import Result
+    def _readable(self, entries: Sequence[Any], closed: Callable[[], list[Any]]) -> bool:
+        """By the number of operations first, since closed forms of many take long to find."""
+        result = Result("", (len(entries),), tuple(entries), "")
+        if operations_of((result,)) > MOST_OPERATIONS:
+            return False
+        try:
+            return sum(len(Plain()(self.tree(x))) for x in closed()) <= MOST_PRINTED
+        except ModelError:
+            return False  # too many terms
 
-        return operations_of((Result("", (len(entries),), tuple(entries), ""),))
+    @cached_property
+    def _energies(self) -> tuple[Any, ...]:
+        """Kinetic and potential energy and what networks store; none where they are too long."""
+        try:
+            found = tuple(self.closed.energy)
+        except ModelError:
+            return ()
+        size = sum(len(Plain()(self.tree(x))) for x in found)
+        return found if size <= MOST_PRINTED else ()
 
     # -- closed forms
 
     @cached_property
     def closed(self) -> Any:
         """The derivation over sympy, simplified as far as asked for."""
-        return self._subject.derivation.closed_form(self._subject.level, progress=self._tell)
+        return self._subject.derivation.closed_form(
+            self._subject.level, budget=MOST_PRODUCTS, progress=self._tell
+        )
 
     def tree(self, expression: Any) -> Math:
         """An expression as a formula."""
@@ -92,6 +119,7 @@ class Forms:
             found.append(self._loops())
         if self.short:
             found.append(self._written_out())
+        if self.short and self._energies:
             found.append(self._energy())
         if self._subject.model.joints:
             found.append(self._reactions())
@@ -101,10 +129,9 @@ class Forms:
         self._tell("equations of motion")
         blocks: list[Block] = [said("In ", motion_equation(self._subject))]
         if self.short:
-            form = self.closed
-            blocks += self._matrix("M", form.mass_matrix, symmetric=True)
-            blocks += self._matrix("h", form.bias)
-            blocks += self._matrix("Q", form.forces)
+            blocks += self._matrix("M", self.closed.mass_matrix, symmetric=True)
+            blocks += self._matrix("h", self.closed.bias)
+            blocks += self._matrix("Q", self.closed.forces)
         else:
             blocks += self._listed("constrained" if self._whole else "equations")
             blocks += self._forces()
@@ -247,13 +274,12 @@ class Forms:
 
     def _energy(self) -> Section:
         self._tell("energy")
-        form = self.closed
         names = ("T", "V", "W")
         rows = [
-            Row(Name(n), self.tree(x)) for n, x in zip(names, form.energy, strict=False) if x != 0
+            Row(Name(n), self.tree(x)) for n, x in zip(names, self._energies, strict=False) if x != 0
         ]
         words = ["kinetic energy T", "the potential energy V", "what networks store, W"]
-        shown = [w for w, x in zip(words, form.energy, strict=False) if x != 0]
+        shown = [w for w, x in zip(words, self._energies, strict=False) if x != 0]
         if not rows:
             return Section("Energy", (said("Nothing stores energy."),))
         return Section("Energy", (said(f"The energy in the system: {listed(shown)}."), Formulas(tuple(rows))))
@@ -269,7 +295,7 @@ class Forms:
             f"elements in it not, about the origin of its head and {where}:"
         )
         blocks: list[Block] = [said(text)]
-        if self.short_reactions and self.short:
+        if self.short_reactions:
             for joint in subject.model.joints:
                 force, torque = self.closed.reaction(joint.name)
                 rows = (
