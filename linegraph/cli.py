@@ -1,4 +1,4 @@
-"""The command line: `linegraph new`, `emit`, `derive`, `show`, `check`, `trees`, `assemble`, `schema`, `completion`.
+"""The command line: `linegraph new`, `emit`, `derive`, `show`, `check`, `trees` and the other commands.
 
 The only module that prints. Results go to standard output, messages and progress to standard error.
 Exit status: 0 done, 1 a check has failed, 2 the model or the call is wrong. Heavy modules are imported by

@@ -1,9 +1,9 @@
 """How formulas look: in LaTeX, in MathML and as plain text, the same names and the same order in all three.
 
-    names         Greek letters, subscripts, dots, words
-    tree          what is meant, and the order of factors and summands
-    expressions   from sympy to trees
-    writing, latex, mathml, plain
+names         Greek letters, subscripts, dots, words
+tree          what is meant, and the order of factors and summands
+expressions   from sympy to trees
+writing, latex, mathml, plain
 """
 
 from __future__ import annotations

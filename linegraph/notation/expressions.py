@@ -16,6 +16,7 @@ from linegraph.notation.tree import (
     Raw,
     Relation,
     Root,
+    Sum,
     negated,
     product,
     total,
@@ -76,7 +77,7 @@ class Expressions:
             self._known[e] = self._tree(e)
         return self._known[e]
 
-    def _tree(self, e: Any) -> Math:  # noqa: PLR0911
+    def _tree(self, e: Any) -> Math:
         if e.is_Symbol:
             return self._name(e.name)
         if e.is_Add:
@@ -89,7 +90,7 @@ class Expressions:
             ratio = Quotient(Number(str(abs(e.p))), Number(str(e.q)))
             return negated(ratio) if e.p < 0 else ratio
         if e.is_Integer or e.is_Float:
-            whole = int(e) if e.is_Integer or float(e).is_integer() and abs(e) < 1e6 else float(e)
+            whole = int(e) if e.is_Integer or (float(e).is_integer() and abs(e) < 1e6) else float(e)
             return number(whole)
         if e.is_Relational and e.rel_op == "==":
             return Relation(self(e.lhs), "=", self(e.rhs))
@@ -170,8 +171,7 @@ def _of_time(e: Any) -> bool:
 
 
 def _minus(tree: Math) -> bool:
-    terms = getattr(tree, "terms", ())
-    return len(terms) == 1 and bool(terms[0][0])
+    return isinstance(tree, Sum) and len(tree.terms) == 1 and tree.terms[0][0]
 
 
 __all__ = ["DIGITS", "Expressions", "number"]

@@ -6,7 +6,7 @@ import unicodedata
 from typing import TYPE_CHECKING
 
 from linegraph.notation.names import LATEX_GREEK
-from linegraph.notation.tree import Call, Math, Name, Number, Product, Quotient, Raw
+from linegraph.notation.tree import TRANSPOSED, Call, Math, Name, Number, Product, Quotient, Raw
 from linegraph.notation.writing import ATOM, SIDES, SUM, Writer, digits, visible
 
 if TYPE_CHECKING:
@@ -37,6 +37,14 @@ _ESCAPES = {
     "−": r"\ensuremath{-}",
     "×": r"\ensuremath{\times}",
     "→": r"\ensuremath{\to}",
+    "∞": r"\ensuremath{\infty}",
+    "Σ": r"\ensuremath{\sum}",
+    "ℓ": r"\ensuremath{\ell}",
+    "̇": "'",
+    "ᵀ": r"\ensuremath{^{\mathsf{T}}}",
+    "…": r"\dots{}",
+    "ł": "l",
+    "ø": "o",
     "–": "--",
 }
 
@@ -48,11 +56,11 @@ _BEFORE = {"δ": r"\delta ", "Δ": r"\Delta "}
 
 
 def escaped(text: str) -> str:
-    """Any text for LaTeX's text mode: printable, one line, nothing in it a command.
+    r"""Any text for LaTeX's text mode: printable, one line, nothing in it a command.
 
     Example:
         >>> escaped("50 % of a_1")
-        '50 \\\\% of a\\\\_1'
+        '50 \\% of a\\_1'
     """
     return "".join(map(_letter, visible(text)))
 
@@ -78,6 +86,7 @@ class Latex(Writer):
     """Writes LaTeX."""
 
     minus = "-"
+    comma = r",\allowbreak\ "
 
     def name(self, name: Name) -> str:
         """Letters in italics, words as one name, subscripts upright where they are words."""
@@ -94,6 +103,8 @@ class Latex(Writer):
     def _letter(self, text: str) -> str:
         if text in LATEX_GREEK:
             return _greek(text)
+        if text == "ℓ":
+            return r"\ell "
         if len(text) == 1 and text.isascii() and text.isalpha():
             return text
         if text.isascii() and text.isalnum():
@@ -136,9 +147,13 @@ class Latex(Writer):
     def raised(self, base: str, exponent: Math) -> str:
         """An exponent."""
         inner = self.whole(exponent)
-        if isinstance(exponent, Name) and exponent.letter == "T":
+        if exponent == TRANSPOSED:
             inner = r"\mathsf{T}"
-        return f"{{{base}}}^{{{inner}}}" if base.startswith("\\") or "_" in base else f"{base}^{{{inner}}}"
+        return (
+            f"{{{base}}}^{{{inner}}}"
+            if base.startswith("\\") or "_" in base
+            else f"{base}^{{{inner}}}"
+        )
 
     def root(self, of: Math) -> str:
         """Under its sign."""

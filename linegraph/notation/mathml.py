@@ -5,9 +5,9 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
-from linegraph.notation.tree import Call, Math, Name, Number, Raw
 from linegraph.notation.latex import _wide
-from linegraph.notation.writing import ATOM, SUM, Writer, digits, visible
+from linegraph.notation.tree import TRANSPOSED, Call, Math, Name, Number, Raw
+from linegraph.notation.writing import ATOM, SUM, Writer, digits, solid, visible
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -104,9 +104,10 @@ class MathMl(Writer):
 
     def raised(self, base: str, exponent: Math) -> str:
         """An exponent."""
-        from linegraph.notation.writing import solid
-
-        return f"<msup>{self.one(solid(base))}{self.one(self.whole(exponent))}</msup>"
+        above = self.one(self.whole(exponent))
+        if exponent == TRANSPOSED:
+            above = '<mi mathvariant="normal">T</mi>'
+        return f"<msup>{self.one(solid(base))}{above}</msup>"
 
     def root(self, of: Math) -> str:
         """Under its sign."""

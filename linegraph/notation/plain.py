@@ -8,7 +8,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from linegraph.notation.tree import Call, Math, Name, Number, Raw
-from linegraph.notation.writing import ATOM, POWER, SUBSCRIPTS, SUPERSCRIPTS, SUM, Writer, digits, visible
+from linegraph.notation.writing import (
+    ATOM,
+    POWER,
+    SUBSCRIPTS,
+    SUM,
+    SUPERSCRIPTS,
+    Writer,
+    digits,
+    solid,
+    visible,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,7 +36,7 @@ class Plain(Writer):
     def name(self, name: Name) -> str:
         """Digits as subscripts, all else behind ``_``; primes for dots."""
         subs = [visible(sub) for sub in name.subs]
-        if len(subs) == 1 and subs[0].isascii() and subs[0].isdigit() or digits(subs):
+        if (len(subs) == 1 and subs[0].isascii() and subs[0].isdigit()) or digits(subs):
             tail = "".join(subs).translate(SUBSCRIPTS)
         else:
             tail = "".join(f"_{sub}" for sub in subs)
@@ -44,7 +54,7 @@ class Plain(Writer):
     def quotient(self, above: Math, below: Math) -> str:
         """With a stroke."""
         top, bottom = self.held(above, POWER), self.held(below, POWER)
-        return f"{top}/{bottom}"
+        return solid(f"{top}/{bottom}")
 
     def raised(self, base: str, exponent: Math) -> str:
         """Whole powers as superscripts."""
@@ -83,4 +93,3 @@ class Plain(Writer):
     def raw(self, tree: Raw) -> str:
         """As text."""
         return visible(tree.text)
-

@@ -49,7 +49,7 @@ def install(notation: Notation) -> None:
     """Tell sympy, and IPython through it."""
 
     def shown(expression: Any, mode: str = "plain", **options: Any) -> str:
-        text = FacePrinter(notation).doprint(expression)
+        text = str(FacePrinter(notation).doprint(expression))
         return {
             "plain": text,
             "inline": f"${text}$",

@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 MASS, GRAVITY, LENGTH, OTHER, COORDINATE, FUNCTION, RATE, ACCELERATION, INPUT = range(9)
 """What a name stands for; the order of factors."""
 
-Math: TypeAlias = "Name | Number | Sum | Product | Quotient | Power | Root | Call | Listed | Grid | Relation | Over | Raw"
+Math: TypeAlias = (
+    "Name | Number | Sum | Product | Quotient | Power | Root | Call | Listed | Grid | Relation | "
+    "Over | Raw"
+)
 
 
 @dataclass(frozen=True)
@@ -297,3 +300,5 @@ def rounded(tree: Math) -> bool:
 
 
 ZERO, ONE = Number("0"), Number("1")
+TRANSPOSED = Name("T")
+"""The exponent of a transposed matrix."""

@@ -57,7 +57,9 @@ def pieces(text: str) -> list[tuple[int, str]]:
 
 def visible(text: str) -> str:
     """Any text on one line without characters that cannot be seen or that turn the direction of others."""
-    shown = "".join(c if unicodedata.category(c)[0] != "C" or c in "\n\t" else _code(c) for c in text)
+    shown = "".join(
+        c if unicodedata.category(c)[0] != "C" or c in "\n\t" else _code(c) for c in text
+    )
     return " ".join(shown.split())
 
 
@@ -116,7 +118,7 @@ class Writer:
                 return POWER
         return ATOM
 
-    def write(self, tree: Math) -> str:  # noqa: PLR0911
+    def write(self, tree: Math) -> str:
         """A tree, without brackets around it."""
         match tree:
             case Name():
@@ -195,7 +197,7 @@ class Writer:
         """A power; of a function that of its name."""
         if isinstance(base, Call) and isinstance(exponent, Number):
             return self.called_power(base, exponent, bare=True)
-        return self.raised(self.held(base, ATOM), exponent)
+        return self.raised(solid(self.held(base, ATOM)), exponent)
 
     # -- what each writer says
 

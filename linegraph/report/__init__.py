@@ -1,9 +1,9 @@
 """What people read of a model: an overview, and the derivation as a person would write it.
 
-    overview      `linegraph show`
-    contents      the document of a derivation: system, graphs, laws, principle, forms
-    document      what a document consists of, whatever it is written in
-    text, markdown, latex, html    its writers
+overview      `linegraph show`
+contents      the document of a derivation: system, graphs, laws, principle, forms
+document      what a document consists of, whatever it is written in
+text, markdown, latex, html    its writers
 """
 
 from __future__ import annotations

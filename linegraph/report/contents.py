@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from linegraph.report.choice import chosen_tree
 from linegraph.report.document import Document, short_of_digits
 from linegraph.report.forms import Forms
-from linegraph.report.graphs import chosen_tree, system_graph, terminal_graphs, topological
+from linegraph.report.graphs import system_graph, terminal_graphs, topological
 from linegraph.report.laws import terminal_equations
 from linegraph.report.principle import connecting, orthogonality
 from linegraph.report.subject import Subject
-from linegraph.report.system import conventions, system
+from linegraph.report.system import conventions, described
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,7 +37,7 @@ def document(
     tell = progress or (lambda text: None)
     tell("graphs")
     sections = [
-        system(subject),
+        described(subject),
         terminal_graphs(subject),
         system_graph(subject),
         chosen_tree(subject),

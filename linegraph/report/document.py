@@ -1,4 +1,4 @@
-"""What a report consists of, whatever it is written in: sections of paragraphs, tables, formulas, pictures."""
+"""What a report consists of, whatever it is written in: sections, paragraphs, tables, formulas, pictures."""
 
 from __future__ import annotations
 

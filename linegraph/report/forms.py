@@ -7,7 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.errors import ModelError
 from linegraph.notation.plain import Plain
-from linegraph.notation.tree import ONE, ZERO, Grid, Math, Name, Power, Product, product, total
+from linegraph.notation.tree import (
+    ONE,
+    TRANSPOSED,
+    ZERO,
+    Grid,
+    Math,
+    Name,
+    Power,
+    Product,
+    product,
+    total,
+)
 from linegraph.program import Result, operations_of
 from linegraph.report.document import Block, Code, Formulas, Listing, Row, Section, said
 from linegraph.report.intermediates import listed_program
@@ -106,7 +117,9 @@ class Forms:
         if not self._subject.folded:
             return expression
         values = {
-            name: p.value for name, p in self._subject.model.parameters.items() if p.value is not None
+            name: p.value
+            for name, p in self._subject.model.parameters.items()
+            if p.value is not None
         }
         return expression.subs(values)
 
@@ -187,7 +200,9 @@ class Forms:
                     continue
                 rows.append(Row(left, entry))
         twin = " M is symmetric; entries below its diagonal are not repeated." * symmetric
-        missing = " Entries that are not shown are zero." if len(rows) < sum(map(len, tree.rows)) else ""
+        missing = (
+            " Entries that are not shown are zero." if len(rows) < sum(map(len, tree.rows)) else ""
+        )
         about = f"{twin}{missing}".strip()
         return [Formulas(tuple(rows)), *([said(about)] if about else [])]
 
@@ -196,7 +211,11 @@ class Forms:
         subject = self._subject
         plain = [f"{q}_dot" for q in subject.q_names]
         if plain == subject.v_names[: len(plain)]:
-            return [said("The velocities of mechanics are the rates of the coordinates: N is the identity.")]
+            return [
+                said(
+                    "The velocities of mechanics are the rates of the coordinates: N is the identity."
+                )
+            ]
         from linegraph import orthogonality
 
         f = self._functions
@@ -238,9 +257,13 @@ class Forms:
         if any(p.value is None for p in self._subject.model.parameters.values()):
             return []
         found = derivation.assembled
-        text = f"{found.rank} of {len(found.unique)} are independent: {freedoms_text(found.freedoms)}."
+        text = (
+            f"{found.rank} of {len(found.unique)} are independent: {freedoms_text(found.freedoms)}."
+        )
         loose = [
-            q.name for q, one in zip(self._subject.multipliers, found.unique, strict=True) if not one
+            q.name
+            for q, one in zip(self._subject.multipliers, found.unique, strict=True)
+            if not one
         ]
         if loose:
             return [said(f"{text} Not unique are ", Code(", ".join(loose)), ".")]
@@ -251,8 +274,9 @@ class Forms:
         subject, form = self._subject, self.closed
         M, h, Q = form.mass_matrix, form.bias, form.forces
         a = subject.symbols(subject.a_names)
-        loops = self.short_constraints and subject.tree.closed
-        J = form.constraint_jacobian if loops else None
+        J: Any = None
+        if subject.tree.closed and self.short_constraints:
+            J = form.constraint_jacobian
         rows = []
         for i in range(M.shape[0]):
             left: list[tuple[bool, Math]] = []
@@ -267,7 +291,7 @@ class Forms:
                 if entry != ZERO:
                     right.append((False, _times(entry, subject.look.name(quantity.name))))
             if subject.tree.closed and J is None:
-                row = Power(Name("J", bold=True), Name("T"))
+                row = Power(Name("J", bold=True), TRANSPOSED)
                 right.append((False, Name("(Jᵀλ)", (str(i + 1),)) if row else ZERO))
             rows.append(Row(total(left, ordered=False), total(right)))
         return Section("Written out", (Formulas(tuple(rows)),))
@@ -276,13 +300,17 @@ class Forms:
         self._tell("energy")
         names = ("T", "V", "W")
         rows = [
-            Row(Name(n), self.tree(x)) for n, x in zip(names, self._energies, strict=False) if x != 0
+            Row(Name(n), self.tree(x))
+            for n, x in zip(names, self._energies, strict=False)
+            if x != 0
         ]
         words = ["kinetic energy T", "the potential energy V", "what networks store, W"]
         shown = [w for w, x in zip(words, self._energies, strict=False) if x != 0]
         if not rows:
             return Section("Energy", (said("Nothing stores energy."),))
-        return Section("Energy", (said(f"The energy in the system: {listed(shown)}."), Formulas(tuple(rows))))
+        return Section(
+            "Energy", (said(f"The energy in the system: {listed(shown)}."), Formulas(tuple(rows)))
+        )
 
     def _reactions(self) -> Section:
         self._tell("reactions")
@@ -291,8 +319,8 @@ class Forms:
         where = axes.get(subject.model.choices.reactions, "in the axes of the joint's head")
         text = (
             "Once v̇ is known, and λ with loops, every other variable follows from the circuit and the cutset "
-            "equations. The force and the torque that a joint exerts on its head, its effort included and the "
-            f"elements in it not, about the origin of its head and {where}:"
+            "equations. The force and the torque that a joint exerts on its head, its effort included and "
+            f"the elements in it not, about the origin of its head and {where}:"
         )
         blocks: list[Block] = [said(text)]
         if self.short_reactions:
@@ -316,7 +344,8 @@ class Forms:
 
 def _components(row: Row) -> list[Row]:
     """A vector as one where it fits, else by components."""
-    assert isinstance(row.right, Grid) and isinstance(row.left, Name)
+    assert isinstance(row.right, Grid)
+    assert isinstance(row.left, Name)
     if len(Plain()(row.right)) <= WIDEST_GRID:
         return [row]
     left = row.left

@@ -98,7 +98,7 @@ class _Steps:
                 continue
             self._said.add(name)
             found[-1][1].append(Row(name, right))
-        return [Group(label, tuple(rows)) for label, rows in found if rows]
+        return [Group(label.replace("->", "→"), tuple(rows)) for label, rows in found if rows]
 
     def _name(self, node: Node) -> Name:
         a = node.a
@@ -114,7 +114,12 @@ class _Steps:
             columns = result.shape[1] if len(result.shape) > 1 else 0
             for k, entry in enumerate(result.entries):
                 i, j = divmod(k, columns) if columns else (k, 0)
-                if columns and j < i and columns == result.shape[0] and _alike(result, i, j, columns):
+                if (
+                    columns
+                    and j < i
+                    and columns == result.shape[0]
+                    and _alike(result, i, j, columns)
+                ):
                     continue
                 tree = self._nodes(entry)
                 if tree == ZERO:

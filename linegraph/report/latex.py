@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from linegraph.notation.latex import Latex, escaped
 from linegraph.notation.plain import Plain
+from linegraph.notation.tree import Name
 from linegraph.report.document import (
     Block,
     Code,
@@ -20,7 +21,8 @@ from linegraph.report.document import (
     Table,
     Text,
 )
-from linegraph.report.lines import broken
+from linegraph.report.lines import broken, typeset
+from linegraph.report.text import said as plain
 from linegraph.report.text import visible_words
 
 if TYPE_CHECKING:
@@ -28,13 +30,16 @@ if TYPE_CHECKING:
 
     from linegraph.graph import IntegerMatrix
 
-WIDTH = 74
+WIDTH = 84
 """Characters of plain text that a line of formulas holds."""
 
 MOST_COLUMNS = 18
+NARROW = 16
+"""A column of so many characters is never broken."""
+
 LEVELS = ("section", "subsection", "subsubsection", "paragraph")
 
-HEAD = r"""\documentclass[11pt,a4paper]{article}
+HEAD = r"""\documentclass[11pt,a4paper,fleqn]{article}
 \usepackage[utf8]{inputenc}
 \usepackage[T1]{fontenc}
 \usepackage{lmodern}
@@ -52,6 +57,7 @@ HEAD = r"""\documentclass[11pt,a4paper]{article}
 \setlength{\parskip}{0.6em plus 0.2em}
 \setlength{\LTleft}{0pt}
 \setlength{\jot}{4pt}
+\setlength{\mathindent}{1.5em}
 \setcounter{MaxMatrixCols}{40}
 \emergencystretch=3em
 \newcolumntype{L}[1]{>{\raggedright\arraybackslash}p{#1\linewidth}}
@@ -65,11 +71,13 @@ def render(document: Document) -> str:
         r"\author{}",
         r"\date{}",
         r"\begin{document}",
+        r"\abovedisplayskip=4pt plus 2pt \abovedisplayshortskip=4pt plus 2pt",
+        r"\belowdisplayskip=4pt plus 2pt \belowdisplayshortskip=4pt plus 2pt",
         r"\maketitle",
     ]
     if document.about:
-        lines.append(escaped(document.about) + "\n")
-    lines.append(r"\tableofcontents")
+        lines.append(rf"{{\raggedright {escaped(document.about)}\par}}")
+    lines.append(r"{\setlength{\parskip}{0pt}\tableofcontents}")
     for section in document.sections:
         lines += _section(section, 0)
     return "\n".join([*lines, r"\end{document}"]) + "\n"
@@ -79,7 +87,11 @@ def _section(section: Section, depth: int) -> list[str]:
     title = escaped(section.title[:1].upper() + section.title[1:])
     lines = ["", rf"\{LEVELS[min(depth, 3)]}{{{title}}}"]
     for block in section.blocks:
-        lines += _section(block, depth + 1) if isinstance(block, Section) else ["", *_block(block)]
+        if isinstance(block, Section):
+            lines += _section(block, depth + 1)
+        else:
+            # a display without an empty line before it belongs to its paragraph
+            lines += [*([] if isinstance(block, Formulas) else [""]), *_block(block)]
     return lines
 
 
@@ -115,33 +127,44 @@ def _inline(part: object) -> str:
         return inner.replace(stripped, escaped(stripped)) if stripped else inner
     if isinstance(part, Code):
         command = "textbf" if part.strong else "textsf"
-        shown = escaped(part.text)
-        for stop in ("/", ".", r"\_"):
-            shown = shown.replace(stop, rf"{stop}\allowbreak{{}}")
-        return rf"\{command}{{{shown}}}"
+        return rf"\{command}{{{breakable(part.text)}}}"
     return f"${Latex()(part)}$"  # type: ignore[arg-type]
 
 
+def breakable(text: str) -> str:
+    """A name that may be broken behind its strokes and points."""
+    shown = escaped(text)
+    for stop in ("/", ".", r"\_"):
+        shown = shown.replace(stop, rf"{stop}\allowbreak{{}}")
+    return shown
+
+
 def aligned(rows: Sequence[Row], width: int) -> list[str]:
-    """Equations below each other, aligned at their signs, long ones broken."""
+    """Equations below each other, long ones broken; aligned at their signs where the left sides are short."""
+    level = all(isinstance(row.left, Name) for row in rows)
     lines: list[str] = []
     for k, row in enumerate(rows):
         end = r" \\" if k + 1 < len(rows) else ""
-        own = _broken(row, width)
+        own = _named(row, width) if level else _broken(row, width)
         lines += [*(line + r" \\" for line in own[:-1]), own[-1] + end]
     return lines
 
 
+def _named(row: Row, width: int) -> list[str]:
+    """A name and what it is."""
+    used = typeset(Plain()(row.left)) + 3
+    first, *others = broken(row.right, Latex(), width - 4, max(0, used - 4), typeset)
+    left = Latex()(row.left)
+    return [f"{left} &{row.sign} {first}", *(rf"&\qquad {line}" for line in others)]
+
+
 def _broken(row: Row, width: int) -> list[str]:
-    left = Plain()(row.left)
-    if len(left) > width // 2:
-        lines = broken(row.left, Latex(), width - 8)
-        rest = broken(row.right, Latex(), width - 8)
-        start = [f"&{lines[0]}", *(rf"&\qquad {line}" for line in lines[1:])]
-        start[-1] += f" {row.sign} {rest[0]}"
-        return [*start, *(rf"&\qquad {line}" for line in rest[1:])]
-    first, *others = broken(row.right, Latex(), width - len(left) - 3)
-    return [f"{Latex()(row.left)} &{row.sign} {first}", *(rf"&\qquad {line}" for line in others)]
+    """Both sides in a row."""
+    lines = broken(row.left, Latex(), width - 4, 0, typeset)
+    used = typeset(Plain()(row.left)) + 3 if len(lines) == 1 else width // 2
+    first, *others = broken(row.right, Latex(), width - 4, min(used, width - 8), typeset)
+    lines[-1] += f" {row.sign} {first}"
+    return [f"&{lines[0]}", *(rf"&\qquad {line}" for line in (*lines[1:], *others))]
 
 
 def _display(rows: Sequence[Row]) -> list[str]:
@@ -164,17 +187,24 @@ def _table(head: Sequence[str], rows: Sequence[Sequence[Text]]) -> list[str]:
 
 
 def _widths(head: Sequence[str], rows: Sequence[Sequence[Text]]) -> list[float]:
-    """Of each column its share of the line, by the length of what stands in it."""
-    from linegraph.report.text import said as plain
-
-    sizes = []
-    for j, title in enumerate(head):
-        cells = [len(plain(row[j])) for row in rows]
-        longest = max([len(title), 3, *cells])
-        sizes.append(min(longest, 20 + longest / 3) + 1)
-    whole = sum(sizes)
-    room = 0.93
-    return [min(room * size / whole, 0.018 * size) for size in sizes]
+    """Of each column its share of the line: narrow ones as wide as they are, the others what is left."""
+    longest = [
+        max([len(title), 3, *(len(plain(row[j])) for row in rows)]) for j, title in enumerate(head)
+    ]
+    needed = [0.0155 * size + 0.012 for size in longest]
+    gaps = 0.014 * len(head)
+    if sum(needed) + gaps <= 1:
+        return needed
+    kept = [size <= NARROW for size in longest]
+    rest = 1 - gaps - sum(w for w, keep in zip(needed, kept, strict=True) if keep)
+    shares = [
+        0.0 if keep else min(size, 60) ** 0.7 for size, keep in zip(longest, kept, strict=True)
+    ]
+    whole = sum(shares) or 1
+    return [
+        w if keep else rest * share / whole
+        for w, keep, share in zip(needed, kept, shares, strict=True)
+    ]
 
 
 def _matrix(matrix: IntegerMatrix) -> list[str]:
@@ -199,11 +229,11 @@ def _matrix(matrix: IntegerMatrix) -> list[str]:
 
 
 def _sums(matrix: IntegerMatrix) -> list[str]:
-    lines = [r"{\small"]
+    lines = [r"{\small\raggedright"]
     for name, row in zip(matrix.rows, matrix.entries, strict=True):
         terms = [
-            rf"${'+' if value > 0 else '-'}$\,\textsf{{{escaped(matrix.columns[j])}}}"
+            rf"${'+' if value > 0 else '-'}$\,\textsf{{{breakable(matrix.columns[j])}}}"
             for j, value in sorted(row.items())
         ]
-        lines.append(rf"\textsf{{{escaped(name)}}}: {' '.join(terms) or '0'}\par")
+        lines.append(rf"\textsf{{{breakable(name)}}}: {' '.join(terms) or '0'}\par")
     return [*lines, "}"]

@@ -57,7 +57,9 @@ def crossed(left: Math, right: Math) -> Math:
 def terminal_equations(subject: Subject) -> Section:
     """The laws of all components."""
     blocks: list[Block] = [
-        said("Terminal equations tie the across variables of a component's edges to their through variables.")
+        said(
+            "Terminal equations tie the across variables of a component's edges to their through variables."
+        )
     ]
     if subject.model.bodies:
         blocks.append(Section("Bodies", _bodies(subject)))
@@ -65,7 +67,7 @@ def terminal_equations(subject: Subject) -> Section:
         blocks.append(Section("Joints", _joints(subject)))
     if subject.model.constraints or subject.model.relations:
         blocks.append(Section("Constraints", _constraints(subject)))
-    if subject.model.elements:
+    if subject.model.force_elements:
         blocks.append(Section("Force elements", _elements(subject)))
     if subject.network is not None:
         blocks.append(Section("Components of networks", tuple(network_laws(subject))))
@@ -81,7 +83,8 @@ def _bodies(subject: Subject) -> tuple[Block, ...]:
             pull: Math = vector("r", f"{body.name}.{MASS_CENTER}", dots=2)
             if any(x != 0 for x in subject.model.gravity):
                 pull = Sum(((False, pull), (True, letter("g"))))
-            rows.append(Row(vector("f", edge), negated(Product((mass, pull)))))
+            factors = mass.factors if isinstance(mass, Product) else (mass,)
+            rows.append(Row(vector("f", edge), negated(Product((*factors, pull)))))
         if any(x != 0 for x in body.inertia):
             spin = vector("ω", body.name)
             tensor = vector("J", body.name)
@@ -91,8 +94,9 @@ def _bodies(subject: Subject) -> tuple[Block, ...]:
     text = said(
         "The inertia edge of a body exerts d'Alembert's force and torque on its mass centre, the weight with "
         "it: here ", Name("r", bold=True), " is the position of the mass centre, ", Name("ω", bold=True),
-        " the angular velocity of the body and ", Name("J", bold=True), " its central inertia. Rigid arms have "
-        "no law for their through variables: their across variables are fixed in the body.")  # fmt: skip
+        " the angular velocity of the body and ", Name("J", bold=True), " its central inertia. Rigid "
+        "arms have no law for their through variables: their across variables are fixed in the body."
+    )  # fmt: skip
     return (text, Formulas(tuple(rows))) if rows else (text,)
 
 
@@ -157,7 +161,14 @@ def _constraints(subject: Subject) -> tuple[Block, ...]:
         rows.append(((Code(limit.name),), (limit.kind,), tuple(parts), (about,)))
     for relation in subject.model.relations:
         quantity = relation.equation()
-        rows.append(((Code(relation.name),), ("relation",), (subject.look.name(quantity.name),), (quantity.about,)))
+        rows.append(
+            (
+                (Code(relation.name),),
+                ("relation",),
+                (subject.look.name(quantity.name),),
+                (quantity.about,),
+            )
+        )
     text = "The across variable of a constraint is known and its through variable is not: a multiplier."
     return (said(text), Table(("constraint", "type", "multipliers", "meaning"), tuple(rows)))
 
@@ -167,13 +178,15 @@ def _constraints(subject: Subject) -> tuple[Block, ...]:
 
 def _elements(subject: Subject) -> tuple[Block, ...]:
     rows: list[Row] = []
-    for element in subject.model.elements:
-        rows += _load(subject, element) if isinstance(element, Load) else [_element(subject, element)]
+    for element in subject.model.force_elements:
+        rows += (
+            _load(subject, element) if isinstance(element, Load) else [_element(subject, element)]
+        )
     text: Text = (
         "A positive through variable ", Name("y"), " of an element pulls: its two points together, along the "
         "line between them whose length is ", Name("ℓ"), ", or the coordinate of its joint back. A load is "
         "the force and the torque given.")  # fmt: skip
-    turning = [e.name for e in subject.model.elements if getattr(e, "axes", "") == BODY]
+    turning = [e.name for e in subject.model.force_elements if getattr(e, "axes", "") == BODY]
     blocks: list[Block] = [said(*text), Formulas(tuple(rows))]
     if turning:
         blocks.append(said("In the axes of the body they act on: ", Code(", ".join(turning)), "."))
@@ -233,8 +246,8 @@ def network_laws(subject: Subject) -> list[Block]:
     for own in network.laws.own:
         rows.append(Row(_symbol(subject, branch, *own.key).rate(), trees(own.rate)))  # type: ignore[union-attr]
     text = (
-        "The laws of the components; what stores has the rate of its charge in it. A port in mechanics has the "
-        "coordinate of its joint for its displacement and pulls it back."
+        "The laws of the components; what stores has the rate of its charge in it. A port in mechanics "
+        "has the coordinate of its joint for its displacement and pulls it back."
     )
     return [said(text), Formulas(tuple(rows))]
 

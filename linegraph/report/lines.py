@@ -2,17 +2,35 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from linegraph.notation.plain import Plain
 from linegraph.notation.writing import pieces, solid
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from linegraph.notation.tree import Math
     from linegraph.notation.writing import Writer
 
 
-def broken(tree: Math, writer: Writer, width: int, first: int = 0) -> list[str]:
+_SUBSCRIPTS = re.compile(r"_[\w/.]+")
+
+
+def typeset(text: str) -> int:
+    """The width of plain text where subscripts are small."""
+    small = sum(len(found) for found in _SUBSCRIPTS.findall(text))
+    return len(text) - (2 * small) // 5
+
+
+def broken(
+    tree: Math,
+    writer: Writer,
+    width: int,
+    first: int = 0,
+    measure: Callable[[str], int] = len,
+) -> list[str]:
     """A formula in lines.
 
     Args:
@@ -20,11 +38,12 @@ def broken(tree: Math, writer: Writer, width: int, first: int = 0) -> list[str]:
         writer: what writes it.
         width: characters of plain text that a line holds.
         first: how many of them are taken on the first line.
+        measure: the width of some plain text.
     """
     text, plain = pieces(writer.marked(tree)), pieces(Plain().marked(tree))
     if len(text) != len(plain):
         return [solid(writer.marked(tree))]
-    sizes = [len(piece) for _, piece in plain]
+    sizes = [measure(piece) for _, piece in plain]
     lines: list[str] = []
     start, room = 0, width - first
     while start < len(text):

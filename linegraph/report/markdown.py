@@ -111,7 +111,12 @@ def _spoken(found: re.Match[str]) -> str:
 
 def safe(latex: str) -> str:
     """LaTeX that Markdown leaves alone: no backslash before punctuation, no bars of tables."""
-    return latex.replace(r"\,", r"\thinspace ").replace(r"\\", r"\cr ").replace("|", r"\vert ")
+    return (
+        latex.replace(r"\,", r"\thinspace ")
+        .replace(r"\\", r"\cr ")
+        .replace("\\allowbreak\\ ", " ")
+        .replace("|", r"\vert ")
+    )
 
 
 def _formulas(rows: tuple[Row, ...]) -> str:
@@ -144,4 +149,6 @@ def _diagram(picture: Picture) -> str:
 
 def label(text: str) -> str:
     """Any text in a Mermaid label: letters and digits as they are, all else by number."""
-    return "".join(c if c.isalnum() and c.isascii() or c in " ._/" else f"#{ord(c)};" for c in visible(text))
+    return "".join(
+        c if (c.isalnum() and c.isascii()) or c in " ._/" else f"#{ord(c)};" for c in visible(text)
+    )

@@ -6,7 +6,18 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL, Node
 from linegraph.notation.expressions import RENAMED, number
-from linegraph.notation.tree import ONE, Call, Math, Power, Quotient, Root, Sum, negated, product, total
+from linegraph.notation.tree import (
+    ONE,
+    Call,
+    Math,
+    Power,
+    Quotient,
+    Root,
+    Sum,
+    negated,
+    product,
+    total,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container
@@ -88,7 +99,7 @@ def _cancelled(terms: list[tuple[bool, Math]]) -> list[tuple[bool, Math]]:
     for negative, term in terms:
         inner = term.terms if isinstance(term, Sum) else ((False, term),)
         for own, part in inner:
-            opposite = (not (negative != own), part)
+            opposite = (negative == own, part)
             if opposite in flat:
                 flat.remove(opposite)
             else:
@@ -97,6 +108,5 @@ def _cancelled(terms: list[tuple[bool, Math]]) -> list[tuple[bool, Math]]:
 
 
 def _unsigned(tree: Math) -> tuple[bool, Math]:
-    turned = negated(tree)
-    terms = getattr(tree, "terms", ())
-    return (True, turned) if len(terms) == 1 and terms[0][0] else (False, tree)
+    minus = isinstance(tree, Sum) and len(tree.terms) == 1 and tree.terms[0][0]
+    return (True, negated(tree)) if minus else (False, tree)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from linegraph.body import MASS_CENTER
 from linegraph.domains import ROTATION, TRANSLATION
 from linegraph.elements import Load
-from linegraph.notation.tree import ZERO, Math, Name, Over, Power, Product, Sum, total
+from linegraph.notation.tree import TRANSPOSED, ZERO, Math, Name, Over, Power, Product, Sum, total
 from linegraph.report.document import Block, Code, Formulas, Inline, Row, Section, said
 from linegraph.report.graphs import called
 from linegraph.report.laws import (
@@ -56,9 +56,10 @@ def _arms(subject: Subject) -> tuple[Block, ...]:
         Row(moment, total([(False, torque), (False, crossed(head, force))], ordered=False)),
     )
     text: tuple[Inline, ...] = (
-        "A rigid arm ", arm, " turns with its body, so a rotation appears in translation as a velocity across "
-        "the arm; and a force appears in rotation as a torque: the torque ", moment, " of an edge about the "
-        "origin of ground is the torque ", torque, " about its own head and the moment of its force there."
+        "A rigid arm ", arm, " turns with its body, so a rotation appears in translation as a velocity "
+        "across the arm; and a force appears in rotation as a torque: the torque ", moment, " of an edge "
+        "about the origin of ground is the torque ", torque, " about its own head and the moment of its "
+        "force there."
     )  # fmt: skip
     arms = [e.name for e in subject.derivation.topology.projection.edges if "/arm" in e.name]
     blocks: list[Block] = [said(*text), Formulas(rows)]
@@ -123,8 +124,9 @@ def orthogonality(subject: Subject) -> Section:
             "inertia edges, efforts, elements and what closes loops:"))  # fmt: skip
         blocks.append(Formulas((Row(left, ZERO),)))
     blocks.append(said(
-        "The variations of all across variables follow from those of the velocities, which are independent; so "
-        "each coefficient is zero, and these are the equations of motion ", motion_equation(subject), "."))  # fmt: skip
+        "The variations of all across variables follow from those of the velocities, which are independent; "
+        "so each coefficient is zero, and these are the equations of motion ",
+        motion_equation(subject), "."))  # fmt: skip
     return Section("The principle of orthogonality", tuple(blocks))
 
 
@@ -139,7 +141,9 @@ def _sums(subject: Subject) -> list[Row]:
             pair: Math = _pair(subject, domain, "e", spatial)
             rows.append(Row(Over("Σ", f"e in {called(domain)}", pair), ZERO))
             continue
-        terms: list[tuple[bool, Math]] = [(False, _pair(subject, domain, e, spatial)) for e in edges]
+        terms: list[tuple[bool, Math]] = [
+            (False, _pair(subject, domain, e, spatial)) for e in edges
+        ]
         rows.append(Row(total(terms, ordered=False), ZERO))
     return rows
 
@@ -162,12 +166,18 @@ def _left(subject: Subject) -> Math | None:
         force = dotted(vector("f", edge), vector("v", edge, before="δ"))
         torque = dotted(vector("τ", edge), vector("ω", body, before="δ"))
         one = total([(False, force), (False, torque)], ordered=False)
-        terms.append((False, Over("Σ", "bodies i", Sum(((False, force), (False, torque)))) if many else one))
+        terms.append(
+            (False, Over("Σ", "bodies i", Sum(((False, force), (False, torque)))) if many else one)
+        )
     terms += _efforts(subject)
-    for element in model.elements:
+    for element in model.force_elements:
         if isinstance(element, Load):
-            terms.append((False, dotted(vector("f", element.name), vector("v", element.name, before="δ"))))
-            terms.append((False, dotted(vector("τ", element.name), vector("ω", element.name, before="δ"))))
+            terms.append(
+                (False, dotted(vector("f", element.name), vector("v", element.name, before="δ")))
+            )
+            terms.append(
+                (False, dotted(vector("τ", element.name), vector("ω", element.name, before="δ")))
+            )
             continue
         _, v = element_motion(subject, element)
         rate = subject.look.name(v.name)
@@ -177,7 +187,9 @@ def _left(subject: Subject) -> Math | None:
         assert isinstance(x, Name)
         terms.append((True, Product((y, _varied(x)))))
     if subject.tree.closed:
-        row = Product((Power(letter("λ"), Name("T")), letter("J"), Name("v", bold=True, before="δ")))
+        row = Product(
+            (Power(letter("λ"), TRANSPOSED), letter("J"), Name("v", bold=True, before="δ"))
+        )
         terms.append((False, row))
     return total(terms, ordered=False)
 

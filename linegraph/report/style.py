@@ -58,15 +58,15 @@ figcaption { color: var(--soft); font-size: 0.9rem; }
 @media print {
   :root { --ink: #000000; --soft: #444444; --line: #bbbbbb; --paper: #ffffff; --tint: #ffffff;
     --link: #000000; color-scheme: light; }
-  body { font-size: 9.5pt; }
+  html { font-size: 10pt; }
   main { max-width: none; padding: 0; }
   nav { border: 1px solid var(--line); }
   h2, h3 { break-after: avoid; }
   figure, tr { break-inside: avoid; }
   thead { display: table-header-group; }
   .eqs, .wide { overflow: visible; }
-  table { font-size: 8pt; }
-  table.matrix { font-size: 7pt; }
+  .eqs p { line-height: 1.6; }
+  .listing .eqs { columns: 2; }
   table.matrix td { min-width: 0; padding: 0.1rem 0.15rem; }
 }
 """

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from linegraph.joints.base import BY_INPUT
-from linegraph.notation.tree import ZERO, Name, Power, Product, Relation, Sum, total
+from linegraph.notation.tree import TRANSPOSED, ZERO, Name, Power, Product, Relation, Sum, total
 from linegraph.report.document import Block, Code, Inline, Section, Table, Text, said
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ def motion_equation(subject: Subject) -> Relation:
     left = Sum(((False, Product((letter("M"), letter("v", dots=1)))), (False, letter("h"))))
     right: Any = letter("Q")
     if subject.tree.closed:
-        pushed = Product((Power(letter("J"), Name("T")), letter("λ")))
+        pushed = Product((Power(letter("J"), TRANSPOSED), letter("λ")))
         right = Sum(((False, right), (False, pushed)))
     return Relation(left, "=", right)
 
@@ -41,7 +41,9 @@ def conventions(subject: Subject, rounded: bool) -> Section:
     if subject.tree.positions:
         rates = Relation(letter("q", dots=1), "=", Product((letter("N"), letter("v"))))
         text += [", and ", rates]
-    text += [". A dot is a derivative by time; vectors and matrices are bold; units are those of the SI."]
+    text += [
+        ". A dot is a derivative by time; vectors and matrices are bold; units are those of the SI."
+    ]
     blocks: list[Block] = [said(*text)]
     signs = (
         "An edge runs from its tail to its head. In an incidence matrix it has +1 where it leaves a vertex "
@@ -59,11 +61,13 @@ def conventions(subject: Subject, rounded: bool) -> Section:
         )
     blocks.append(said(signs.strip()))
     if rounded:
-        blocks.append(said("Numbers are rounded to six significant digits in print, and only there."))
+        blocks.append(
+            said("Numbers are rounded to six significant digits in print, and only there.")
+        )
     return Section("Conventions", tuple(blocks))
 
 
-def system(subject: Subject) -> Section:
+def described(subject: Subject) -> Section:
     """Everything the model says."""
     blocks: list[Block] = [_counts(subject)]
     for title, table in (
@@ -86,8 +90,8 @@ def _counts(subject: Subject) -> Block:
     if model.bodies:
         parts.append(count(len(model.bodies), "body", "bodies"))
         parts.append(count(len(model.joints), "joint"))
-    if model.elements:
-        parts.append(count(len(model.elements), "force element"))
+    if model.force_elements:
+        parts.append(count(len(model.force_elements), "force element"))
     if model.constraints:
         parts.append(count(len(model.constraints), "constraint"))
     if model.components:
@@ -123,14 +127,16 @@ def _bodies(subject: Subject) -> tuple[Block, ...] | None:
         return None
     rows = []
     for body in subject.model.bodies.values():
-        center = subject.vector(body.center if body.first is None else body.first or ())
+        center = subject.vector((body.center if body.first is None else body.first) or ())
         frames: list[Inline] = []
         for name, placement in body.frames.items():
             frames += [", "] if frames else []
             frames += [Code(name), " at ", subject.vector(placement.at)]
         place: Text = (center,) if body.first is None else ("first moment ", center)
         inertia = _inertia(subject, body)
-        rows.append(((Code(body.name),), (subject.value(body.mass),), place, inertia, tuple(frames)))
+        rows.append(
+            ((Code(body.name),), (subject.value(body.mass),), place, inertia, tuple(frames))
+        )
     head = ("body", "mass / kg", "mass centre / m", "inertia / kg m²", "frames / m")
     about = (
         "Inertias are taken about the mass centre in the axes of the body"
@@ -159,7 +165,9 @@ def _joints(subject: Subject) -> tuple[Block, ...] | None:
         axis: Text = (subject.vector(joint.axis),) if joint.freedoms in (1, 3) else ("–",)
         tail, head = joint.between
         between: Text = (Code(tail), " → ", Code(head))
-        rows.append(((Code(joint.name),), (_kind(joint.kind),), between, axis, _remark(subject, joint)))
+        rows.append(
+            ((Code(joint.name),), (_kind(joint.kind),), between, axis, _remark(subject, joint))
+        )
     return (Table(("joint", "type", "tail → head", "axis", "remark"), tuple(rows)),)
 
 
@@ -189,7 +197,7 @@ def _kind(kind: str) -> str:
 
 
 def _constraints(subject: Subject) -> tuple[Block, ...] | None:
-    rows = [
+    rows: list[tuple[Text, ...]] = [
         ((Code(c.name),), (_kind(c.kind),), (Code(c.ends[0]), " → ", Code(c.ends[1])))
         for c in subject.model.constraints
     ]
@@ -199,7 +207,7 @@ def _constraints(subject: Subject) -> tuple[Block, ...] | None:
 
 def _elements(subject: Subject) -> tuple[Block, ...] | None:
     rows = []
-    for element in subject.model.elements:
+    for element in subject.model.force_elements:
         place: Text
         joint, between = getattr(element, "joint", None), getattr(element, "between", None)
         if joint is not None:
@@ -233,7 +241,9 @@ def _parameters(subject: Subject) -> tuple[Block, ...] | None:
     for parameter in subject.model.parameters.values():
         value: Text = ("–",) if parameter.value is None else (subject.value(parameter.value),)
         name = subject.look.name(parameter.name)
-        rows.append(((Code(parameter.name),), (name,), value, (parameter.unit,), (parameter.about,)))
+        rows.append(
+            ((Code(parameter.name),), (name,), value, (parameter.unit,), (parameter.about,))
+        )
     head = ("parameter", "symbol", "value", "unit", "meaning")
     return (Table(head, tuple(rows)),) if rows else None
 
@@ -253,4 +263,4 @@ def _state(subject: Subject) -> tuple[Block, ...]:
     return (Table(("", "symbol", "unit", "meaning"), tuple(rows)),) if rows else (said("None."),)
 
 
-__all__ = ["conventions", "count", "letter", "listed", "motion_equation", "system"]
+__all__ = ["conventions", "count", "described", "letter", "listed", "motion_equation"]

@@ -67,7 +67,10 @@ def _block(block: Block) -> list[str]:
         case Listing(groups):
             lines: list[str] = []
             for group in groups:
-                lines += [f"  {visible(group.label)}:", *(x for row in group.rows for x in _row(row))]
+                lines += [
+                    f"  {visible(group.label)}:",
+                    *(x for row in group.rows for x in _row(row)),
+                ]
             return lines
         case Picture():
             return _wrapped(f"[{block.about} Edges and their roles are in the tables.]")
@@ -123,7 +126,9 @@ def _table(rows: Iterable[Iterable[str]]) -> list[str]:
     widths = [max(len(row[j]) for row in cells) for j in range(len(cells[0]))]
     lines = []
     for row in cells:
-        padded = (cell.ljust(min(width, WIDEST_CELL)) for cell, width in zip(row, widths, strict=True))
+        padded = (
+            cell.ljust(min(width, WIDEST_CELL)) for cell, width in zip(row, widths, strict=True)
+        )
         lines.append("  " + "  ".join(padded).rstrip())
     return [lines[0], "  " + "  ".join("-" * min(w, WIDEST_CELL) for w in widths), *lines[1:]]
 
@@ -137,7 +142,9 @@ def matrix_lines(matrix: IntegerMatrix, width: int) -> list[str]:
         return [f"  {line}" for line in table]
     lines = []
     for name, row in zip(matrix.rows, matrix.entries, strict=True):
-        terms = (f"{'+' if v > 0 else '-'} {visible(matrix.columns[j])}" for j, v in sorted(row.items()))
+        terms = (
+            f"{'+' if v > 0 else '-'} {visible(matrix.columns[j])}" for j, v in sorted(row.items())
+        )
         first, *others = _wrapped(f"{visible(name)}: {' '.join(terms) or '0'}")
         lines += [f"  {first}", *(f"      {line}" for line in others)]
     return lines
