@@ -28,15 +28,13 @@ from linegraph.simplification.polynomial import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from linegraph.expression import Number
 
 EQUAL = 1e-12
 """Coefficients that are floats are equal if they differ by less than this, relatively."""
 
-MOST_TERMS = 4000
-"""Of polynomials with more terms other angles are not tried."""
+SEARCH = 10_000
+"""How much work on terms the search for other angles may take."""
 
 
 def merged(ring: Ring, terms: Terms, *, doubled: bool = True) -> Terms:
@@ -51,15 +49,16 @@ def merged(ring: Ring, terms: Terms, *, doubled: bool = True) -> Terms:
     count = len(found) + 1
     while len(found) < count:
         count = len(found)
-        waves = _waves(ring, found)
-        for harmonic in waves:
-            _complements(ring, found, harmonic)
-        for i, a in enumerate(waves):
-            for b in waves[i + 1 :]:
-                _sums(ring, found, a, b)
+        ring.spend(count)
+        for term in list(found):
+            if term in found:
+                _complement(ring, found, term)
+        for term in list(found):
+            if term in found:
+                _sum(ring, found, term)
     if doubled:
-        for harmonic in _waves(ring, found):
-            _doubled(ring, found, harmonic)
+        for term in list(found):
+            _doubled(ring, found, term)
     return found
 
 
@@ -67,12 +66,13 @@ def fewest(ring: Ring, terms: Terms) -> Terms:
     """The same in the angles that leave fewest terms, put together."""
     best = merged(ring, terms)
     present = dict(terms)
-    while len(best) > 2 and len(present) < MOST_TERMS:
+    end = ring.work + SEARCH
+    while len(best) > 2 and ring.work < end:
         waves = _waves(ring, present)
         tried = []
         for a in waves:
             for b in waves:
-                if a != b:
+                if a != b and ring.work < end:
                     tried += [_exchanged(ring, present, a, b, sign) for sign in (1, -1)]
         results = [(len(together := merged(ring, t)), n, t, together) for n, t in enumerate(tried)]
         if not results or min(results[:])[0] >= len(best):
@@ -102,7 +102,11 @@ def _waves(ring: Ring, terms: Terms) -> list[Harmonic]:
 
 def _pair(ring: Ring, harmonic: Harmonic) -> tuple[int, int]:
     """The terms of an angle's sine and cosine."""
-    return unit(ring.generator(SIN, harmonic)), unit(ring.generator(COS, harmonic))
+    found = ring.waves.get(harmonic)
+    if found is None:
+        found = unit(ring.generator(SIN, harmonic)), unit(ring.generator(COS, harmonic))
+        ring.waves[harmonic] = found
+    return found
 
 
 def _signed(ring: Ring, kind: str, harmonic: Harmonic) -> tuple[Number, int]:
@@ -121,68 +125,78 @@ def _same(a: Number, b: Number) -> bool:
     return a == b
 
 
-def _having(ring: Ring, terms: Terms, place: int, least: int) -> Iterator[int]:
-    """The terms in which a generator stands at least so often, as they are now."""
-    for term in list(terms):
-        if term in terms and ring.exponent(term, place) >= least:
-            yield term
+def _of_waves(ring: Ring, term: int) -> list[tuple[str, Harmonic, int]]:
+    """The sines and cosines in a term: which, of what angle, how often."""
+    return [
+        (kind, content, exponent)
+        for place, exponent in ring.exponents(term)
+        for kind, content in (ring.generators[place],)
+        if kind in (SIN, COS)
+    ]
 
 
-def _complements(ring: Ring, terms: Terms, harmonic: Harmonic) -> None:
-    """``1 - sin^2`` and ``1 - 2 sin^2``."""
-    sine, cosine = _pair(ring, harmonic)
-    place = ring.generator(SIN, harmonic)
-    for term in _having(ring, terms, place, 2):
+def _complement(ring: Ring, terms: Terms, term: int) -> None:
+    """``1 - sin^2`` and ``1 - 2 sin^2``, where a term has the square."""
+    for kind, harmonic, exponent in _of_waves(ring, term):
+        if kind == COS or exponent < 2:
+            continue
+        sine, cosine = _pair(ring, harmonic)
         rest = term - 2 * sine
         k, other = terms[term], terms.get(rest)
         if other is None:
             continue
         if _same(k, -other):
-            factor: Number = other
             new = rest + 2 * cosine
         elif _same(k, -2 * other):
-            factor, new = other, rest + unit(ring.generator(COS, harmonic_sum(harmonic, harmonic)))
+            new = rest + unit(ring.generator(COS, harmonic_sum(harmonic, harmonic)))
         else:
             continue
         del terms[term], terms[rest]
-        gather(terms, new, factor)
+        gather(terms, new, other)
+        return
 
 
-def _sums(ring: Ring, terms: Terms, a: Harmonic, b: Harmonic) -> None:
-    """Products of sines and cosines of two angles that are one of their sum or difference."""
-    (sin_a, cos_a), (sin_b, cos_b) = _pair(ring, a), _pair(ring, b)
-    for kind, first, second in (
-        (COS, cos_a + cos_b, sin_a + sin_b),
-        (SIN, sin_a + cos_b, cos_a + sin_b),
-    ):
-        places = [place for place, _ in ring.exponents(first)]
-        for term in _having(ring, terms, places[0], 1):
-            if ring.exponent(term, places[1]) < 1:
+def _sum(ring: Ring, terms: Terms, term: int) -> None:
+    """A product of sines and cosines of two angles that, with another, is one of their sum or difference."""
+    waves = [wave for wave in _of_waves(ring, term) if wave[2] > 0]
+    for kind_a, a, _ in waves:
+        for kind_b, b, _ in waves:
+            if a == b or kind_a == SIN:
                 continue
-            other = term - first + second
+            # cos a cos b with sin a sin b, cos a sin b with sin a cos b
+            (sin_a, cos_a), (sin_b, cos_b) = _pair(ring, a), _pair(ring, b)
+            own, turned = (cos_b, sin_b) if kind_b == COS else (sin_b, cos_b)
+            other = term - cos_a - own + sin_a + turned
             if other not in terms:
                 continue
             k, j = terms[term], terms[other]
+            kind = COS if kind_b == COS else SIN
             if _same(k, j):
                 sign = -1 if kind == COS else 1
             elif _same(k, -j):
                 sign = 1 if kind == COS else -1
             else:
                 continue
-            factor, wave = _signed(ring, kind, harmonic_sum(a, b, sign))
+            # sin b cos a - cos b sin a = sin(b - a)
+            whole = harmonic_sum(b, a, sign) if kind == SIN else harmonic_sum(a, b, sign)
+            factor, wave = _signed(ring, kind, whole)
             del terms[term], terms[other]
-            gather(terms, term - first + wave, k * factor)
+            gather(terms, term - cos_a - own + wave, k * factor)
+            return
 
 
-def _doubled(ring: Ring, terms: Terms, harmonic: Harmonic) -> None:
+def _doubled(ring: Ring, terms: Terms, term: int) -> None:
     """``sin a cos a`` as ``sin(2a)/2``."""
-    sine, cosine = _pair(ring, harmonic)
-    place, other = ring.generator(SIN, harmonic), ring.generator(COS, harmonic)
-    for term in _having(ring, terms, place, 1):
-        if ring.exponent(term, place) == 1 and ring.exponent(term, other) == 1:
-            k = terms.pop(term)
+    k, new = terms[term], term
+    waves = {(kind, harmonic): exponent for kind, harmonic, exponent in _of_waves(ring, term)}
+    for (kind, harmonic), exponent in waves.items():
+        if kind == SIN and exponent == 1 and waves.get((COS, harmonic)) == 1:
+            sine, cosine = _pair(ring, harmonic)
             double = unit(ring.generator(SIN, harmonic_sum(harmonic, harmonic)))
-            gather(terms, term - sine - cosine + double, plain(k * Fraction(1, 2)))
+            k, new = plain(k * Fraction(1, 2)), new - sine - cosine + double
+    if new != term:
+        del terms[term]
+        gather(terms, new, k)
 
 
 def _exchanged(ring: Ring, terms: Terms, a: Harmonic, b: Harmonic, sign: int) -> Terms:
@@ -197,6 +211,7 @@ def _exchanged(ring: Ring, terms: Terms, a: Harmonic, b: Harmonic, sign: int) ->
     cosine = c_n * c_a + sign * (s_n * s_a)
     powers: dict[tuple[int, int], Poly] = {}
     found: Terms = {}
+    ring.spend(len(terms))
     for term, k in terms.items():
         i, j = ring.exponent(term, sin_b), ring.exponent(term, cos_b)
         if i < 0 or j < 0:

@@ -103,8 +103,7 @@ class Writer:
         """One coefficient with all that it stands with."""
         if moving == {0: 1}:
             return self.nested(self.grouped(coefficient))
-        scale = _denominator(moving.values())
-        scale *= -1 if 2 * sum(x < 0 for x in moving.values()) > len(moving) else 1
+        scale = _denominator(moving.values()) * _sign(moving.values(), coefficient.values())
         rates = self.nested(self._terms({t: plain(k * scale) for t, k in moving.items()}))
         outer = {t: plain(k * reciprocal(scale)) for t, k in coefficient.items()}
         return self.nested(self.grouped(outer)) * rates
@@ -202,8 +201,7 @@ class Writer:
                 whole = [(t + v + o, x * k) for v, o, inner, k in members for t, x in inner.items()]
                 found += self._terms({t: plain(x) for t, x in whole})
                 continue
-            scale = _denominator(rest.values())
-            scale *= -1 if 2 * sum(x < 0 for x in rest.values()) > len(rest) else 1
+            scale = _denominator(rest.values()) * _sign(rest.values(), [m[3] for m in members])
             whole_kernel = tuple((t, plain(x * scale)) for t, x in sorted(rest.items()))
             kernel = Factor(-1, whole_kernel)
             for varying, outer, _, k in members:
@@ -219,9 +217,10 @@ class Writer:
             return self._product(terms[0])
         common = _common(terms)
         if common:
-            inner = [_divided(term, common) for term in terms]
+            k = _content(terms)
+            inner = [_divided(term, k, common) for term in terms]
             outer = [self._factor(f) ** e for f, e in common]
-            return sympy.Mul(*outer, self.nested(inner))
+            return sympy.Mul(number(k), *outer, self.nested(inner))
         as_product = self._as_product(terms)
         if as_product is not None:
             return as_product
@@ -256,10 +255,10 @@ class Writer:
         factors = list(dict.fromkeys(f for term in terms for f, _ in term.factors))
         if any(e < 0 for term in terms for _, e in term.factors):
             return None
+        if not factors or any(_irreducible(terms, factor) for factor in factors):
+            return None
         places = {factor: n for n, factor in enumerate(factors)}
         denominator = _denominator(term.coefficient for term in terms)
-        if not factors:
-            return None
         rows: dict[tuple[int, ...], int] = {}
         for term in terms:
             row = [0] * len(factors)
@@ -310,7 +309,33 @@ def _common(terms: Sequence[Term]) -> tuple[tuple[Factor, int], ...]:
     return tuple(least.items())
 
 
-def _divided(term: Term, common: tuple[tuple[Factor, int], ...]) -> Term:
+def _irreducible(terms: Sequence[Term], factor: Factor) -> bool:
+    """Whether a sum without common factors is A x + B with A or B of one term: then it is no product."""
+    exponents = [dict(term.factors).get(factor, 0) for term in terms]
+    having = sum(e != 0 for e in exponents)
+    return max(exponents) == 1 and (having == 1 or len(terms) - having == 1)
+
+
+def _content(terms: Sequence[Term]) -> Number:
+    """A number that all coefficients are multiples of, negative if most of them are; 1 among floats."""
+    numbers = [term.coefficient for term in terms]
+    if any(isinstance(k, float) for k in numbers):
+        return 1
+    below = _denominator(numbers)
+    above = reduce(gcd, (abs(int(k * below)) for k in numbers))
+    return plain(_sign(numbers, ()) * Fraction(above, below))
+
+
+def _sign(inside: Iterable[Number], outside: Iterable[Number]) -> int:
+    """The sign to take out of a sum, so that fewer signs are left before and in it."""
+    inside, outside = list(inside), list(outside)
+    negative = sum(k < 0 for k in (*inside, *outside))
+    turned = len(inside) + len(outside) - negative
+    return -1 if turned < negative else 1
+
+
+def _divided(term: Term, k: Number, common: tuple[tuple[Factor, int], ...]) -> Term:
     least = dict(common)
     factors = [(f, e - least.get(f, 0)) for f, e in term.factors]
-    return Term(term.coefficient, tuple((f, e) for f, e in factors if e))
+    coefficient = plain(term.coefficient * reciprocal(k))
+    return Term(coefficient, tuple((f, e) for f, e in factors if e))

@@ -17,8 +17,6 @@ from linegraph.expression import Number
 from linegraph.functions import of_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from linegraph.differentiation import Symbol
 
 Terms: TypeAlias = dict[int, Number]
@@ -70,6 +68,7 @@ class Ring:
     Attributes:
         generators: in order of first use.
         angles: what each angle is, as a polynomial.
+        waves: the terms that are sine and cosine of an angle.
         work: products of two terms formed so far.
         inexact: whether a float has come in that is no whole number.
 
@@ -87,12 +86,14 @@ class Ring:
         self.inexact = False
         self.generators: list[Generator] = []
         self.angles: list[Frozen] = []
+        self.waves: dict[Harmonic, tuple[int, int]] = {}
         self._places: dict[Generator, int] = {}
         self._bias = 0
         self._high = 0
         self._watched = 0
         self._squares: list[tuple[int, int]] = []
         self._replaced: dict[int, Terms] = {}
+        self._exponents: dict[int, tuple[tuple[int, int], ...]] = {}
 
     # -- generators
 
@@ -122,16 +123,18 @@ class Ring:
         """Whether a generator is a sine or a cosine."""
         return self.generators[place].kind in (SIN, COS)
 
-    def exponents(self, term: int) -> Iterator[tuple[int, int]]:
+    def exponents(self, term: int) -> tuple[tuple[int, int], ...]:
         """The generators in a term, by place, and their exponents."""
-        rest = term + self._bias
-        place = 0
-        while rest:
-            exponent = (rest & (2**BITS - 1)) - ZERO_DIGIT
-            if exponent:
-                yield place, exponent
-            rest >>= BITS
-            place += 1
+        found = self._exponents.get(term)
+        if found is None:
+            digits = (term + self._bias).to_bytes(len(self.generators) + 1, "little")
+            found = tuple(
+                (place, digit - ZERO_DIGIT)
+                for place, digit in enumerate(digits[:-1])
+                if digit != ZERO_DIGIT
+            )
+            self._exponents[term] = found
+        return found
 
     def exponent(self, term: int, place: int) -> int:
         """The exponent of one generator in a term."""
@@ -213,7 +216,7 @@ class Ring:
         return [(whole, 1)]
 
     def _is_coordinate(self, term: int) -> bool:
-        found = list(self.exponents(term))
+        found = self.exponents(term)
         if len(found) != 1 or found[0][1] != 1:
             return False
         generator = self.generators[found[0][0]]
@@ -234,6 +237,16 @@ class Ring:
 
     # -- arithmetic of terms
 
+    def spend(self, work: int) -> None:
+        """Count work on terms.
+
+        Raises:
+            Swollen: the budget is used up.
+        """
+        self.work += work
+        if self.work > self.budget:
+            raise Swollen
+
     def product(self, p: Terms, q: Terms) -> Terms:
         """All products of a term of one with a term of the other, reduced.
 
@@ -242,9 +255,7 @@ class Ring:
         """
         if len(p) > len(q):
             p, q = q, p
-        self.work += len(p) * len(q)
-        if self.work > self.budget:
-            raise Swollen
+        self.spend(len(p) * len(q))
         found: Terms = {}
         bias, watched = self._bias, self._watched | self._high
         for m1, k1 in p.items():
