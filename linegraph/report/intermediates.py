@@ -16,15 +16,17 @@ if TYPE_CHECKING:
 
     from linegraph.report.subject import Subject
 
+CONSTRAINTS = ("constraints", "constraint_jacobian", "constraint_bias")
+
 ONLY = {
     "equations": ("equations", ("equations",)),
-    "constrained": ("constraints", ("constrained_equations",)),
-    "constraints": ("constraints", ("constraints", "constraint_jacobian", "constraint_bias")),
+    "constrained": ("constraints", ("equations", *CONSTRAINTS)),
+    "constraints": ("constraints", CONSTRAINTS),
     "reactions": ("reactions", ("reactions_at",)),
 }
 """For each listing the functions to derive, and which of them are shown."""
 
-LETTERS = {"M": "M", "h": "h", "J": "J", "gamma": "γ", "phi": "φ", "R": "R"}
+LETTERS = {"gamma": "γ", "gam": "γ", "phi": "φ"}
 
 
 def symbols_of(subject: Subject) -> Callable[[str, Any], Math]:
@@ -82,21 +84,25 @@ class _Steps:
         }
         free = (x for x in ("z", "Z", "y", "ζ", "η") if not any(letter == x for letter, _ in taken))
         self._letter = next(free, "z'")
-        self._said: set[Name] = set()
+        self._known: dict[tuple[int, bool], Name] = {}
 
     def groups(self, program: Program) -> list[Group]:
         """The steps of a program under their labels."""
         self._nodes = Nodes(self._symbol, program.turned)
+        # programs share nodes: what has a name already keeps it
+        for (index, turned), name in self._known.items():
+            if turned == (index in program.turned):
+                self._nodes.known[index] = name
         found: list[tuple[str, list[Row]]] = []
         for node in program.steps:
             if not found or found[-1][0] != node.label:
                 found.append((node.label, []))
+            if node.index in self._nodes.known:
+                continue
             right = self._nodes.named(node)
             name = self._name(node)
             self._nodes.known[node.index] = name
-            if name in self._said:
-                continue
-            self._said.add(name)
+            self._known[node.index, node.index in program.turned] = name
             found[-1][1].append(Row(name, right))
         return [Group(label.replace("->", "→"), tuple(rows)) for label, rows in found if rows]
 
