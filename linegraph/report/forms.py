@@ -16,9 +16,11 @@ from linegraph.notation.tree import (
     Name,
     Power,
     Product,
+    parts,
     product,
     total,
 )
+from linegraph.notation.writing import pieces
 from linegraph.program import Result, operations_of
 from linegraph.report.document import Block, Code, Formulas, Listing, Row, Section, said
 from linegraph.report.intermediates import listed_program
@@ -39,6 +41,9 @@ MOST_PRODUCTS = 3000
 
 MOST_PRINTED = 3600
 """Characters of closed forms that a person still reads: of M and h, of φ, J and γ, of all reactions."""
+
+WIDEST_PIECE = 84
+"""A closed form is not readable that has a part of more characters without a place to break the line."""
 
 WIDEST_GRID = 72
 """A matrix of more characters than this across is written entry by entry."""
@@ -86,9 +91,13 @@ class Forms:
         if operations_of((result,)) > MOST_OPERATIONS:
             return False
         try:
-            return sum(len(Plain()(self.tree(x))) for x in closed()) <= MOST_PRINTED
+            trees = [self.tree(x) for x in closed()]
         except ModelError:
             return False  # too many terms
+        if sum(len(Plain()(tree)) for tree in trees) > MOST_PRINTED:
+            return False
+        cells = [x for t in trees for x in (parts(t) if isinstance(t, Grid) else (t,))]
+        return all(len(p) <= WIDEST_PIECE for x in cells for _, p in pieces(Plain().marked(x)))
 
     @cached_property
     def _energies(self) -> tuple[Any, ...]:

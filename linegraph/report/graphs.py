@@ -113,12 +113,13 @@ def _mechanism(subject: Subject) -> list[Block]:
 def drawn(subject: Subject, domain: str | None) -> str:
     """The graph of a subspace, or without one the mechanism; nothing where there are no drawings."""
     try:
-        drawing = import_module("linegraph.drawing")
+        pictures = import_module("linegraph.drawing.pictures")
+        mechanism = import_module("linegraph.drawing.mechanism")
     except ImportError:
         return ""
     if domain is None:
-        return str(drawing.mechanism_svg(subject.derivation))
-    return str(drawing.graph_svg(subject.derivation, domain))
+        return str(mechanism.mechanism_svg(subject.derivation))
+    return str(pictures.graph_svg(subject.derivation, domain))
 
 
 def _graph(subject: Subject, topology: Topology) -> list[Block]:

@@ -13,6 +13,7 @@ from linegraph.expression import SUB, SYMBOL, Node
 from linegraph.joints.base import BY_INPUT
 from linegraph.network.static import LOOP
 from linegraph.notation.expressions import number
+from linegraph.notation.plain import Plain
 from linegraph.notation.tree import (
     ZERO,
     Listed,
@@ -30,6 +31,9 @@ from linegraph.report.nodes import Nodes
 from linegraph.report.system import letter
 from linegraph.residues import CONSTANT
 from linegraph.vector import times
+
+LONGEST_CELL = 60
+"""Motions of joints that take more characters stand below their table."""
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -102,8 +106,13 @@ def _bodies(subject: Subject) -> tuple[Block, ...]:
 
 def _joints(subject: Subject) -> tuple[Block, ...]:
     rows = []
+    long: list[Row] = []
     for joint in subject.model.joints:
         moves, pushes = _joint(subject, joint)
+        found = [part for part in moves if isinstance(part, Relation)]
+        if sum(len(Plain()(part)) for part in found) > LONGEST_CELL:
+            long += [row for part in found for row in _by_components(part)]
+            moves = ("below",)
         rows.append(((Code(joint.name),), moves, pushes))
     text = (
         "A joint leaves its head free to move against its tail as its velocities say; in every other "
@@ -111,7 +120,18 @@ def _joints(subject: Subject) -> tuple[Block, ...]:
         "Components are those in the axes of its head."
     )
     table = Table(("joint", "motion of the head against the tail", "effort"), tuple(rows))
-    return (said(text), table)
+    return (said(text), table, *([Formulas(tuple(long))] if long else []))
+
+
+def _by_components(part: Relation) -> list[Row]:
+    """A vector that is too long for a cell, component by component."""
+    assert isinstance(part.left, Name)
+    assert isinstance(part.right, Listed)
+    subs = ((*part.left.subs, axis) for axis in "xyz")
+    return [
+        Row(Name(part.left.letter, sub), entry)
+        for sub, entry in zip(subs, part.right.entries, strict=True)
+    ]
 
 
 def _joint(subject: Subject, joint: Joint) -> tuple[Text, Text]:

@@ -21,7 +21,7 @@ _SUBSCRIPTS = re.compile(r"_[\w/.]+")
 def typeset(text: str) -> int:
     """The width of plain text where subscripts are small."""
     small = sum(len(found) for found in _SUBSCRIPTS.findall(text))
-    return len(text) - (2 * small) // 5
+    return len(text) - small // 4
 
 
 def broken(
