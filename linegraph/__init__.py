@@ -4,6 +4,7 @@ from linegraph.derive import Derivation, derive
 from linegraph.emission import emit
 from linegraph.errors import LinegraphError, ModelError, NameRefused, SourceError
 from linegraph.model import Model
+from linegraph.notation import init_printing
 from linegraph.parameters import Parameter
 from linegraph.version import __version__
 
@@ -18,4 +19,5 @@ __all__ = [
     "__version__",
     "derive",
     "emit",
+    "init_printing",
 ]

@@ -1,4 +1,4 @@
-"""The command line: `linegraph new`, `emit`, `show`, `graph`, `check`, `trees`, `assemble` and helpers.
+"""The command line: `linegraph new`, `emit`, `derive`, `graph`, `show`, `check` and the other commands.
 
 The only module that prints. Results go to standard output, messages and progress to standard error.
 Exit status: 0 done, 1 a check has failed, 2 the model or the call is wrong. Heavy modules are imported by
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from linegraph.cli_options import ABOUT_MODEL, EMIT, GRAPH, SET, with_options
+from linegraph.cli_options import ABOUT_MODEL, DERIVE, EMIT, GRAPH, SET, with_options
 from linegraph.errors import LinegraphError, SourceErrors
 from linegraph.version import __version__
 
@@ -60,6 +60,7 @@ def main() -> None:
       linegraph emit anymal.urdf --base floating --lang c --out build
       linegraph emit panda.urdf --lock panda_finger_joint1=0.02 --out build
       linegraph show panda.urdf
+      linegraph derive crane.toml --output crane.html
 
     Exit status: 0 done; 1 a check has failed; 2 the model or the call is wrong, nothing written.
     """
@@ -116,6 +117,48 @@ def emit(
             )
         for path in written:
             click.echo(str(path))
+
+
+@main.command()
+@_about_model
+@with_options(DERIVE)
+def derive(
+    model: str,
+    base: str,
+    locks: tuple[str, ...],
+    parameters: str | None,
+    snap: float,
+    format: str | None,
+    output: str | None,
+    level: str,
+) -> None:
+    """Write the derivation of MODEL as a person would.
+
+    The terminal graphs, the system graph of each subspace with its incidence matrix, the tree and why it
+    was chosen, cutset, circuit, terminal and connecting equations, the principle of orthogonality for this
+    system, then M, h, Q and the reactions: in closed form where these are short, else part by part.
+
+    \b
+    Examples:
+      linegraph derive crane.toml
+      linegraph derive crane.toml --output crane.html
+      linegraph derive crane.toml --output crane.tex --level fast
+    """
+    with _explained():
+        from linegraph.derive import derive as derived
+        from linegraph.report import format_of, report, save
+
+        chosen = format or (format_of(output) if output else "text")
+        system = _read(model, base, locks, parameters, snap)
+        with _progress() as tell:
+            tell("deriving")
+            derivation = derived(system)
+            folded = parameters == "folded"
+            text = report(derivation, chosen, level=level, folded=folded, progress=tell)
+        if output is None:
+            click.echo(text, nl=False)
+        else:
+            click.echo(str(save(output, text)))
 
 
 @main.command()

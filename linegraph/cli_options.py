@@ -165,3 +165,26 @@ GRAPH: tuple[Option, ...] = (
     SET,
 )
 """What `graph` takes besides."""
+
+DERIVE: tuple[Option, ...] = (
+    click.option(
+        "--format",
+        type=click.Choice(["text", "markdown", "latex", "html"]),
+        help="What to write.  [default: as the ending of FILE says (.txt, .md, .tex, .html), else text]",
+    ),
+    click.option(
+        "-o",
+        "--output",
+        metavar="FILE",
+        type=click.Path(dir_okay=False, path_type=str),
+        help="The file to write; without it the report goes to standard output.",
+    ),
+    click.option(
+        "--level",
+        type=click.Choice(["none", "fast", "full"]),
+        default="full",
+        show_default=True,
+        help="How far closed forms are simplified.",
+    ),
+)
+"""What `derive` takes besides."""

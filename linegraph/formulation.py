@@ -86,7 +86,7 @@ def formulate(model: Model, graph: SystemGraph) -> Formulation:
     arms = [edge.name for edge in projection.edges if _is_arm(model, edge)]
     wanted = [*arms, *_wanted(model, absolute)]
     try:
-        translation = choose_forest(projection, _weights(model, projection), (GROUND,), wanted)
+        translation = choose_forest(projection, edge_weights(model, projection), (GROUND,), wanted)
     except ModelError as error:
         raise _explained(error, model) from None
     _require_held(model, translation, absolute)
@@ -156,7 +156,7 @@ def _wanted(model: Model, absolute: tuple[str, ...]) -> list[str]:
     return list(dict.fromkeys(wanted))
 
 
-def _weights(model: Model, projection: Projection) -> dict[str, float]:
+def edge_weights(model: Model, projection: Projection) -> dict[str, float]:
     """The weight of every edge that is not a rigid arm; those weigh nothing."""
     acting = {e.joint for e in model.elements if isinstance(e, Element) and e.joint is not None}
     depth = _depths(projection)

@@ -34,7 +34,7 @@ OVERSIZE: dict[str, str] = {}
 """Files and functions that are bigger, each with its reason."""
 
 LAYERS: tuple[tuple[str, ...], ...] = (
-    ("errors", "version", "vector", "coupling", "outputs"),
+    ("errors", "version", "vector", "coupling", "outputs", "notation"),
     ("domains", "files", "functions", "graph", "state_space"),
     ("algebra", "expression", "formula", "jets"),
     ("differentiation", "residues"),
@@ -97,6 +97,7 @@ CLOSED_FORMS = (
     "dynamic",
     "evaluation",
     "linear",
+    "notation.printing",
     "simplification",
     "simplification.factoring",
     "simplification.plain",

@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from linegraph.closure import Chords
-    from linegraph.derive import Derivation, Numeric
+    from linegraph.derive import Derivation
     from linegraph.joints import Joint
+    from linegraph.numeric import Numeric
 
 GROUND_LINK = -1
 

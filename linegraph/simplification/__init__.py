@@ -22,7 +22,7 @@ import sympy
 
 from linegraph.differentiation import Replay
 from linegraph.errors import ModelError
-from linegraph.simplification.angles import fewest, merged
+from linegraph.simplification.angles import fewest, merged, spread
 from linegraph.simplification.factoring import Writer
 from linegraph.simplification.polynomial import Ring, Swollen
 from linegraph.simplification.proof import EXACT, INEXACT, Point
@@ -159,7 +159,8 @@ class Simplifier:
         forms = [terms, merged(self._ring, terms, doubled=False), merged(self._ring, terms)]
         with contextlib.suppress(Swollen):  # the search alone has become too long
             forms.append(fewest(self._ring, terms))
-        return forms
+            forms.append(spread(self._ring, terms))
+        return [form for n, form in enumerate(forms) if form not in forms[:n]]
 
     def _inner(self, terms: Terms) -> Expr:
         """What stands inside a function, an angle or a root."""

@@ -46,20 +46,22 @@ def merged(ring: Ring, terms: Terms, *, doubled: bool = True) -> Terms:
         doubled: whether double angles may arise from one angle.
     """
     found = dict(terms)
-    count = len(found) + 1
-    while len(found) < count:
-        count = len(found)
-        ring.spend(count)
-        for term in list(found):
-            if term in found:
-                _complement(ring, found, term)
-        for term in list(found):
-            if term in found:
-                _sum(ring, found, term)
-    if doubled:
-        for term in list(found):
-            _doubled(ring, found, term)
+    _put_together(ring, found)
+    if doubled and sum(_doubled(ring, found, term) for term in list(found)):
+        _put_together(ring, found)
     return found
+
+
+def _put_together(ring: Ring, terms: Terms) -> None:
+    """Apply the rules that leave fewer terms until none does."""
+    count = len(terms) + 1
+    while len(terms) < count:
+        count = len(terms)
+        ring.spend(count)
+        for rule in (_complement, _sum):
+            for term in list(terms):
+                if term in terms:
+                    rule(ring, terms, term)
 
 
 def fewest(ring: Ring, terms: Terms) -> Terms:
@@ -79,6 +81,42 @@ def fewest(ring: Ring, terms: Terms) -> Terms:
             break
         _, _, present, best = min(results, key=lambda r: (r[0], r[1]))
     return best
+
+
+def spread(ring: Ring, terms: Terms) -> Terms:
+    """Products of sines and cosines as sums of those of sums of angles: one at most in each term."""
+    found: Terms = {}
+    for term, k in terms.items():
+        waves = _of_waves(ring, term)
+        rest = term - sum(unit(ring.generator(kind, a), e) for kind, a, e in waves)
+        parts: dict[tuple[str, Harmonic], Number] = {(COS, ()): k}
+        for kind, a, exponent in waves:
+            if exponent < 0:
+                return terms
+            for _ in range(exponent):
+                parts = _times(parts, kind, a)
+        ring.spend(len(parts))
+        for (kind, a), factor in parts.items():
+            sign, wave = _signed(ring, kind, a)
+            gather(found, rest + wave, plain(factor * sign))
+    return found
+
+
+def _times(
+    parts: dict[tuple[str, Harmonic], Number], kind: str, a: Harmonic
+) -> dict[tuple[str, Harmonic], Number]:
+    """A sum of sines and cosines times another one: 2 sin b cos a = sin(b + a) + sin(b - a), and so on."""
+    found: dict[tuple[str, Harmonic], Number] = {}
+    for (own, b), k in parts.items():
+        new = COS if own == kind else SIN
+        # of cos b cos a both are positive, of sin b sin a that of the sum is not, of sin b cos a both are
+        signs = (
+            (-1, 1) if (own, kind) == (SIN, SIN) else (1, -1 if (own, kind) == (COS, SIN) else 1)
+        )
+        for sign, direction in zip(signs, (1, -1), strict=True):
+            key = (new, harmonic_sum(b, a, direction))
+            found[key] = found.get(key, 0) + k * Fraction(sign, 2)
+    return found
 
 
 def harmonic_sum(a: Harmonic, b: Harmonic, sign: int = 1) -> Harmonic:
@@ -185,8 +223,8 @@ def _sum(ring: Ring, terms: Terms, term: int) -> None:
             return
 
 
-def _doubled(ring: Ring, terms: Terms, term: int) -> None:
-    """``sin a cos a`` as ``sin(2a)/2``."""
+def _doubled(ring: Ring, terms: Terms, term: int) -> bool:
+    """``sin a cos a`` as ``sin(2a)/2``; whether a term has it."""
     k, new = terms[term], term
     waves = {(kind, harmonic): exponent for kind, harmonic, exponent in _of_waves(ring, term)}
     for (kind, harmonic), exponent in waves.items():
@@ -194,9 +232,11 @@ def _doubled(ring: Ring, terms: Terms, term: int) -> None:
             sine, cosine = _pair(ring, harmonic)
             double = unit(ring.generator(SIN, harmonic_sum(harmonic, harmonic)))
             k, new = plain(k * Fraction(1, 2)), new - sine - cosine + double
-    if new != term:
-        del terms[term]
-        gather(terms, new, k)
+    if new == term:
+        return False
+    del terms[term]
+    gather(terms, new, k)
+    return True
 
 
 def _exchanged(ring: Ring, terms: Terms, a: Harmonic, b: Harmonic, sign: int) -> Terms:

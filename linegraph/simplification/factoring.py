@@ -163,6 +163,8 @@ class Writer:
             kind, content = self.ring.generators[place]
             if kind == SYMBOL:
                 found = content[0] == PARAMETERS
+            elif kind in (SIN, COS):
+                found = False
             else:
                 found = all(
                     self.constant(p)

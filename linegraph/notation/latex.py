@@ -1,0 +1,216 @@
+"""Formulas in LaTeX, for amsmath; no text of a model gets in unescaped."""
+
+from __future__ import annotations
+
+import unicodedata
+from typing import TYPE_CHECKING
+
+from linegraph.notation.names import LATEX_GREEK
+from linegraph.notation.tree import TRANSPOSED, Call, Math, Name, Number, Product, Quotient, Raw
+from linegraph.notation.writing import ATOM, SIDES, SUM, Writer, digits, visible
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+_ESCAPES = {
+    "\\": r"\textbackslash{}",
+    "{": r"\{",
+    "}": r"\}",
+    "$": r"\$",
+    "&": r"\&",
+    "#": r"\#",
+    "%": r"\%",
+    "_": r"\_",
+    "^": r"\textasciicircum{}",
+    "~": r"\textasciitilde{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "|": r"\textbar{}",
+    "`": r"\textasciigrave{}",
+    "'": r"\textquotesingle{}",
+    '"': r"\textquotedbl{}",
+    "-": "{-}",
+    "·": r"\ensuremath{\cdot}",
+    "²": r"\ensuremath{^2}",
+    "³": r"\ensuremath{^3}",
+    "°": r"\ensuremath{^\circ}",
+    "−": r"\ensuremath{-}",
+    "×": r"\ensuremath{\times}",
+    "→": r"\ensuremath{\to}",
+    "∞": r"\ensuremath{\infty}",
+    "Σ": r"\ensuremath{\sum}",
+    "ℓ": r"\ensuremath{\ell}",
+    "̇": "'",
+    "ᵀ": r"\ensuremath{^{\mathsf{T}}}",
+    "…": r"\dots{}",
+    "ł": "l",
+    "ø": "o",
+    "–": "--",
+}
+
+_FUNCTIONS = ("sin", "cos", "tan", "exp", "ln", "sinh", "cosh", "tanh", "max", "min")
+_SIGNS = {"×": r"\times ", "·": r"\cdot ", "≈": r"\approx ", "≤": r"\le ", "→": r"\to "}
+_ACCENTS = ("", r"\dot", r"\ddot", r"\dddot")
+_OVER = {"Σ": r"\sum", "d/dt": r"\frac{\mathrm{d}}{\mathrm{d}t}"}
+_BEFORE = {"δ": r"\delta ", "Δ": r"\Delta "}
+
+
+def escaped(text: str) -> str:
+    r"""Any text for LaTeX's text mode: printable, one line, nothing in it a command.
+
+    Example:
+        >>> escaped("50 % of a_1")
+        '50 \\% of a\\_1'
+    """
+    return "".join(map(_letter, visible(text)))
+
+
+def _letter(c: str) -> str:
+    if c in _ESCAPES:
+        return _ESCAPES[c]
+    if c.isascii():
+        return c
+    if c in LATEX_GREEK:
+        return rf"\ensuremath{{{_greek(c)}}}"
+    base = "".join(x for x in unicodedata.normalize("NFKD", c) if not unicodedata.combining(x))
+    if base.isascii() and base.isalnum():
+        return base
+    return rf"\textless{{}}U+{ord(c):04X}\textgreater{{}}"
+
+
+def _greek(letter: str) -> str:
+    return "o" if letter == "ο" else LATEX_GREEK[letter]
+
+
+class Latex(Writer):
+    """Writes LaTeX."""
+
+    minus = "-"
+    comma = r",\allowbreak\ "
+
+    def name(self, name: Name) -> str:
+        """Letters in italics, words as one name, subscripts upright where they are words."""
+        text = self._letter(name.letter)
+        if name.bold:
+            text = rf"\boldsymbol{{{text}}}"
+        if name.dots:
+            accent = _ACCENTS[min(name.dots, 3)]
+            text = rf"{accent}{{{text}}}"
+        if name.subs:
+            text += f"_{{{('' if digits(name.subs) else ',').join(map(self._sub, name.subs))}}}"
+        return f"{_BEFORE.get(name.before, name.before)}{text}"
+
+    def _letter(self, text: str) -> str:
+        if text in LATEX_GREEK:
+            return _greek(text)
+        if text == "ℓ":
+            return r"\ell "
+        if len(text) == 1 and text.isascii() and text.isalpha():
+            return text
+        if text.isascii() and text.isalnum():
+            return rf"\mathit{{{text}}}"
+        return rf"\textit{{{escaped(text)}}}"
+
+    def _sub(self, text: str) -> str:
+        if text in LATEX_GREEK:
+            return _greek(text)
+        if text.isascii() and (text.isdigit() or (len(text) == 1 and text.isalpha())):
+            return text
+        if text.isascii() and text.isalnum():
+            return rf"\mathrm{{{text}}}"
+        return rf"\text{{{escaped(text)}}}"
+
+    dot = r" \cdot "
+
+    def ten(self, exponent: str) -> str:
+        """With an exponent."""
+        return f"10^{{{exponent}}}"
+
+    def between(self, left: Math, right: Math, sign: str) -> str:
+        """Nothing between letters, a thin space beside words."""
+        if sign:
+            return f" {_SIGNS.get(sign, sign)}"
+        if isinstance(left, Number) and isinstance(right, Number):
+            return r" \cdot "
+        return r"\," if _wide(left) or _wide(right) else " "
+
+    def related(self, sign: str) -> str:
+        """What stands between two sides."""
+        return f" {_SIGNS.get(sign, sign)} "
+
+    def quotient(self, above: Math, below: Math) -> str:
+        """A fraction; a plain one of numbers is small."""
+        small = isinstance(above, Number) and isinstance(below, Number)
+        command = r"\tfrac" if small else r"\frac"
+        return rf"{command}{{{self.whole(above)}}}{{{self.whole(below)}}}"
+
+    def raised(self, base: str, exponent: Math) -> str:
+        """An exponent."""
+        inner = self.whole(exponent)
+        if exponent == TRANSPOSED:
+            inner = r"\mathsf{T}"
+        return (
+            f"{{{base}}}^{{{inner}}}"
+            if base.startswith("\\") or "_" in base
+            else f"{base}^{{{inner}}}"
+        )
+
+    def root(self, of: Math) -> str:
+        """Under its sign."""
+        return rf"\sqrt{{{self.whole(of)}}}"
+
+    def call(self, name: str, arguments: Sequence[Math], *, bare: bool) -> str:
+        """A function."""
+        return self._called(self._function(name), arguments, bare)
+
+    def called_power(self, call: Call, exponent: Math, *, bare: bool) -> str:
+        """``sin² x``."""
+        if call.name == "abs":
+            return self.raised(self.write(call), exponent)
+        named = f"{self._function(call.name)}^{{{self.whole(exponent)}}}"
+        return self._called(named, call.arguments, bare)
+
+    def _called(self, named: str, arguments: Sequence[Math], bare: bool) -> str:
+        if named == "abs":
+            return rf"\lvert {self.whole(arguments[0])}\rvert "
+        if bare and len(arguments) == 1 and isinstance(arguments[0], Name):
+            return f"{named} {self.whole(arguments[0])}"
+        return f"{named}({', '.join(self.whole(a) for a in arguments)})"
+
+    def _function(self, name: str) -> str:
+        if name == "abs":
+            return name
+        return f"\\{name}" if name in _FUNCTIONS else rf"\operatorname{{{escaped(name)}}}"
+
+    def grid(self, rows: Sequence[Sequence[str]]) -> str:
+        """In brackets."""
+        lines = r" \\ ".join(" & ".join(row) for row in rows)
+        return rf"\begin{{bmatrix}} {lines} \end{{bmatrix}}"
+
+    def over(self, sign: str, under: str, body: Math) -> str:
+        """The operator and what it runs over."""
+        low = rf"_{{\text{{{escaped(under)}}}}}" if under else ""
+        inner = self.held(body, ATOM if sign == "d/dt" else SUM)
+        return f"{_OVER.get(sign, sign)}{low} {inner}"
+
+    def raw(self, tree: Raw) -> str:
+        """As it came."""
+        return tree.latex
+
+
+def _wide(tree: Math) -> bool:
+    """Whether a thin space makes a factor easier to read."""
+    match tree:
+        case Name(letter, subs):
+            return len(letter) > 1 or bool(subs and not subs[0].isdigit())
+        case Number():
+            return False
+        case Product() | Quotient():
+            return isinstance(tree, Product)
+    base = getattr(tree, "base", tree)
+    if isinstance(base, Name):
+        return _wide(base)
+    return isinstance(base, Call)
+
+
+__all__ = ["SIDES", "Latex", "escaped"]

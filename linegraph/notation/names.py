@@ -1,0 +1,176 @@
+"""How the names of a model look: Greek letters, subscripts, dots, words."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from linegraph.notation.tree import (
+    COORDINATE,
+    GRAVITY,
+    INPUT,
+    LENGTH,
+    MASS,
+    OTHER,
+    RATE,
+    Name,
+)
+
+if TYPE_CHECKING:
+    from linegraph.derive import Derivation
+
+_LETTER_NAMES = (
+    *("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa"),
+    *("lambda", "mu", "nu", "xi", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi"),
+    *("omega", "Gamma", "Delta", "Theta", "Lambda", "Xi", "Pi", "Sigma", "Upsilon", "Phi", "Psi"),
+    "Omega",
+)
+GREEK = dict(zip(_LETTER_NAMES, "αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ", strict=True))
+"""Names of letters and the letters."""
+
+LATEX_GREEK = {letter: f"\\{name}" for name, letter in GREEK.items()}
+
+_NUMBERED = re.compile(r"([A-Za-z]|[a-zA-Z]+?)([0-9]+)")
+_WORD = re.compile(r"[A-Za-z0-9]+")
+_TWIST = re.compile(r"(.+)_([vw])([xyz])")
+_RATE_OF = re.compile(r"der\((.+)\)")
+
+SUFFIXES = {
+    "angle": ("φ", ()),
+    "angle1": ("φ", ("1",)),
+    "angle2": ("φ", ("2",)),
+    "angle3": ("φ", ("3",)),
+    "displacement": ("s", ()),
+    "x": ("x", ()),
+    "y": ("y", ()),
+    "z": ("z", ()),
+    "qx": ("q", ("x",)),
+    "qy": ("q", ("y",)),
+    "qz": ("q", ("z",)),
+    "qw": ("q", ("w",)),
+    "vx": ("v", ("x",)),
+    "vy": ("v", ("y",)),
+    "vz": ("v", ("z",)),
+    "wx": ("ω", ("x",)),
+    "wy": ("ω", ("y",)),
+    "wz": ("ω", ("z",)),
+}
+"""What the coordinates of a joint with several of them end with, and how they are written."""
+
+
+def shaped(text: str) -> Name:
+    """The look of a name that nothing is known of.
+
+    Example:
+        >>> shaped("m1").subs, shaped("J_axial").subs, shaped("theta").letter, shaped("hinge").letter
+        (('1',), ('axial',), 'θ', 'hinge')
+    """
+    head, *rest = text.split("_")
+    if not all(_WORD.fullmatch(part) for part in (head, *rest)):
+        return Name(text)
+    subs = tuple(GREEK.get(part, part) for part in rest)
+    if head in GREEK:
+        return Name(GREEK[head], subs)
+    numbered = _NUMBERED.fullmatch(head)
+    if numbered and (len(numbered[1]) == 1 or numbered[1] in GREEK):
+        return Name(GREEK.get(numbered[1], numbered[1]), (numbered[2], *subs))
+    return Name(head, subs)
+
+
+def guessed(text: str) -> Name:
+    """The look of a name where no derivation says what it is: endings tell."""
+    rate = _RATE_OF.fullmatch(text)
+    if rate:
+        return guessed(rate[1]).rate()
+    if text.endswith("_dot") and len(text) > 4:
+        return replace(guessed(text[:-4]), role=COORDINATE).rate()
+    twist = _TWIST.fullmatch(text)
+    if twist:
+        return Name("ω" if twist[2] == "w" else "v", (twist[1], twist[3]), role=RATE)
+    name = shaped(text)
+    roles = {"m": MASS, "M": MASS, "J": MASS, "I": MASS, "k": MASS, "d": MASS, "g": GRAVITY}
+    return replace(name, role=roles.get(name.letter, LENGTH if len(name.letter) == 1 else OTHER))
+
+
+def names_of(derivation: Derivation) -> dict[str, Name]:
+    """The look of every symbol of a derivation; no two alike.
+
+    Where two would look alike, each is written as the word it is.
+    """
+    found: dict[str, Name] = {}
+    tree, model = derivation.structure, derivation.model
+    for place, parameter in enumerate(model.parameters.values()):
+        unit = parameter.unit
+        role = MASS if "kg" in unit or "N" in unit else LENGTH
+        role = GRAVITY if unit in ("m/s^2", "m/s²") else role
+        found[parameter.name] = replace(shaped(parameter.name), role=role, place=place)
+    owners = {
+        quantity.name: (joint.name, quantity.name.removeprefix(f"{joint.name}_"))
+        for joint in model.joints
+        for quantity in (*joint.positions(), *joint.velocities())
+    }
+    positions = {quantity.name for quantity in tree.positions}
+    for place, quantity in enumerate(tree.positions):
+        own = _coordinate(quantity.name, owners)
+        found[quantity.name] = replace(own, role=COORDINATE, place=place)
+    for place, quantity in enumerate(tree.velocities):
+        if quantity.name in positions:
+            rate = found[quantity.name].rate()
+            found[f"{quantity.name}_dot"] = replace(rate, place=place)
+        else:
+            rate = replace(_coordinate(quantity.name, owners), role=RATE, place=place)
+            found[quantity.name] = rate
+        found[f"a_{quantity.name}"] = rate.rate()
+    rates = {q.name if q.name not in positions else f"{q.name}_dot" for q in tree.velocities}
+    for place, quantity in enumerate(tree.inputs):
+        name = quantity.name
+        taken = name in positions or name in rates
+        if taken or quantity.about.startswith("effort"):
+            own = Name("u", (name,), role=INPUT, place=place)
+            found[f"u_{name}" if taken else name] = own
+        else:
+            found[name] = replace(shaped(name), role=INPUT, place=place)
+    return _told_apart(_multipliers(derivation, found))
+
+
+def _coordinate(name: str, owners: dict[str, tuple[str, str]]) -> Name:
+    joint, suffix = owners.get(name, ("", ""))
+    if suffix in SUFFIXES and joint:
+        letter, subs = SUFFIXES[suffix]
+        return Name(letter, (joint, *subs))
+    twist = _TWIST.fullmatch(name)
+    if twist:
+        return Name("ω" if twist[2] == "w" else "v", (twist[1], twist[3]))
+    return shaped(name)
+
+
+def _multipliers(derivation: Derivation, found: dict[str, Name]) -> dict[str, Name]:
+    """Those of joints by their component and which reaction it is, all others by their name."""
+    tree: Any = derivation.structure
+    names: list[tuple[str, tuple[str, ...]]] = []
+    for closure in tree.closures:
+        component = closure.component
+        if hasattr(component, "equations"):
+            names += [(q.name, (q.name,)) for q, _ in component.equations()]
+            continue
+        for letter in "ft":
+            ways = (f"{letter}{k}" for k in range(1, 7))
+            names += [(f"{component.name}_{way}", (component.name, way)) for way in ways]
+        names += [(f"{v.name}_drive", (v.name, "drive")) for v in component.velocities()]
+    names += [(r.equation().name, (r.equation().name,)) for r in tree.relations]
+    for place, (name, subs) in enumerate(names):
+        found.setdefault(name, Name("λ", subs, role=INPUT, place=1000 + place))
+    return found
+
+
+def _told_apart(found: dict[str, Name]) -> dict[str, Name]:
+    """Names that look alike as the words they are."""
+    looks: dict[tuple[object, ...], list[str]] = {}
+    for key, name in found.items():
+        looks.setdefault((name.letter, "_".join(name.subs), name.dots), []).append(key)
+    alike = {key for keys in looks.values() if len(keys) > 1 for key in keys}
+    return {
+        key: replace(name, letter=key, subs=(), dots=0) if key in alike else name
+        for key, name in found.items()
+    }

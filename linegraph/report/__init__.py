@@ -1,0 +1,91 @@
+"""What people read of a model: an overview, and the derivation as a person would write it.
+
+overview      `linegraph show`
+contents      the document of a derivation: system, graphs, laws, principle, forms
+document      what a document consists of, whatever it is written in
+text, markdown, latex, html    its writers
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linegraph.errors import LinegraphError
+from linegraph.files import write_all
+from linegraph.report.overview import assembled, show
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from linegraph.derive import Derivation
+
+FORMATS = {"text": ".txt", "markdown": ".md", "latex": ".tex", "html": ".html"}
+"""What a report may be written in, and how its files end."""
+
+
+def report(
+    derivation: Derivation,
+    format: str = "text",
+    *,
+    level: str = "full",
+    folded: bool = False,
+    progress: Callable[[str], None] | None = None,
+) -> str:
+    """The derivation of a model as a person would write it.
+
+    Args:
+        derivation: the derived model.
+        format: one of `FORMATS`.
+        level: how far closed forms are simplified: ``none``, ``fast`` or ``full``.
+        folded: write the parameters' values in place of their names.
+        progress: called with a short text before each stage.
+
+    Raises:
+        LinegraphError: there is no such format.
+
+    Example:
+        >>> from linegraph import Model, derive
+        >>> model = Model("pendulum")
+        >>> bob = model.body("bob", mass=model.parameter("m", 2.0, "kg"), mass_center=(0, 0, -0.5))
+        >>> _ = model.revolute("hinge", between=("ground", bob), axis=(0, 1, 0))
+        >>> "0.25·m·a" in report(derive(model)) or "hinge″" in report(derive(model))
+        True
+    """
+    if format not in FORMATS:
+        raise LinegraphError(f'there is no format "{format}"; formats: {", ".join(FORMATS)}')
+    from linegraph.report.contents import document
+
+    tell = progress or (lambda text: None)
+    found = document(derivation, level, folded, tell)
+    tell(f"writing {format}")
+    return str(import_module(f"linegraph.report.{format}").render(found))
+
+
+def format_of(path: str) -> str:
+    """The format of a file by its ending.
+
+    Raises:
+        LinegraphError: no format ends so.
+    """
+    for name, ending in FORMATS.items():
+        if path.lower().endswith(ending):
+            return name
+    endings = ", ".join(FORMATS.values())
+    raise LinegraphError(f"the ending of {path} tells no format: use {endings}, or --format")
+
+
+def save(path: str, text: str) -> Path:
+    """Write a report, whole or not at all.
+
+    Raises:
+        LinegraphError: it cannot be written.
+    """
+    target = Path(path)
+    if target.is_dir() or not target.name:
+        raise LinegraphError(f"cannot write to {path}: it is a folder")
+    return write_all(target.parent, {target.name: text})[0]
+
+
+__all__ = ["FORMATS", "assembled", "format_of", "report", "save", "show"]

@@ -1,0 +1,53 @@
+"""The report of a derivation: what stands in it, in the order in which it is derived."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linegraph.report.choice import chosen_tree
+from linegraph.report.document import Document, short_of_digits
+from linegraph.report.forms import Forms
+from linegraph.report.graphs import system_graph, terminal_graphs, topological
+from linegraph.report.laws import terminal_equations
+from linegraph.report.principle import connecting, orthogonality
+from linegraph.report.subject import Subject
+from linegraph.report.system import conventions, described
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from linegraph.derive import Derivation
+
+
+def document(
+    derivation: Derivation,
+    level: str = "full",
+    folded: bool = False,
+    progress: Callable[[str], None] | None = None,
+) -> Document:
+    """The report of a derivation.
+
+    Args:
+        derivation: what to report on.
+        level: how far closed forms are simplified: ``none``, ``fast`` or ``full``.
+        folded: whether to write parameters' values in place of their names.
+        progress: called with a short text before each stage.
+    """
+    subject = Subject(derivation, level, folded)
+    tell = progress or (lambda text: None)
+    tell("graphs")
+    sections = [
+        described(subject),
+        terminal_graphs(subject),
+        system_graph(subject),
+        chosen_tree(subject),
+        topological(subject),
+        terminal_equations(subject),
+        connecting(subject),
+        orthogonality(subject),
+        *Forms(subject, tell).sections(),
+    ]
+    title = f"Equations of motion of {derivation.model.name}"
+    whole = Document(title, derivation.model.about, tuple(sections))
+    first = conventions(subject, short_of_digits(whole))
+    return Document(title, derivation.model.about, (first, *sections))

@@ -1,0 +1,184 @@
+"""What a report consists of, whatever it is written in: sections, paragraphs, tables, formulas, pictures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+from linegraph.notation.tree import (
+    Call,
+    Grid,
+    Listed,
+    Math,
+    Name,
+    Number,
+    Over,
+    Power,
+    Product,
+    Quotient,
+    Raw,
+    Relation,
+    Root,
+    Sum,
+    rounded,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from linegraph.graph import IntegerMatrix
+    from linegraph.topology import Topology
+
+
+@dataclass(frozen=True)
+class Code:
+    """Text of a model, such as a name; or words that are `strong`."""
+
+    text: str
+    strong: bool = False
+
+    @property
+    def tag(self) -> str:
+        """The element that it is in HTML."""
+        return "strong" if self.strong else "code"
+
+
+Inline: TypeAlias = "str | Code | Math"
+Text: TypeAlias = tuple[Inline, ...]
+"""Words, names and formulas in a line."""
+
+FORMULA = (
+    Name,
+    Number,
+    Sum,
+    Product,
+    Quotient,
+    Power,
+    Root,
+    Call,
+    Listed,
+    Grid,
+    Relation,
+    Over,
+    Raw,
+)
+"""The inlines that are formulas."""
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """Words."""
+
+    text: Text
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of cells under a head."""
+
+    head: tuple[str, ...]
+    rows: tuple[tuple[Text, ...], ...]
+
+
+@dataclass(frozen=True)
+class Matrix:
+    """An integer matrix with its rows and columns named.
+
+    Attributes:
+        name: its letter.
+        ways: what its rows and its columns are.
+    """
+
+    name: str
+    matrix: IntegerMatrix
+    ways: tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One equation; without a left side it goes on from the one before."""
+
+    left: Math
+    right: Math
+    sign: str = "="
+
+
+@dataclass(frozen=True)
+class Formulas:
+    """Equations below each other."""
+
+    rows: tuple[Row, ...]
+
+
+@dataclass(frozen=True)
+class Group:
+    """Named intermediates that belong together."""
+
+    label: str
+    rows: tuple[Row, ...]
+
+
+@dataclass(frozen=True)
+class Listing:
+    """Intermediates in the order in which they are computed."""
+
+    groups: tuple[Group, ...]
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A drawing, and the graph it is of, for where no drawing can be shown."""
+
+    svg: str
+    about: str
+    topology: Topology | None = None
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading and what stands under it."""
+
+    title: str
+    blocks: tuple[Block, ...]
+
+
+Block: TypeAlias = "Paragraph | Table | Matrix | Formulas | Listing | Picture | Section"
+
+
+@dataclass(frozen=True)
+class Document:
+    """A report."""
+
+    title: str
+    about: str
+    sections: tuple[Section, ...]
+
+
+def said(*text: Inline) -> Paragraph:
+    """A paragraph."""
+    return Paragraph(text)
+
+
+def formulas(blocks: tuple[Block, ...]) -> Iterator[Math]:
+    """Every formula in some blocks."""
+    for block in blocks:
+        match block:
+            case Paragraph(text):
+                yield from _of(text)
+            case Table(_, rows):
+                yield from (m for row in rows for cell in row for m in _of(cell))
+            case Formulas(rows):
+                yield from (side for row in rows for side in (row.left, row.right))
+            case Listing(groups):
+                yield from (x for g in groups for row in g.rows for x in (row.left, row.right))
+            case Section(_, inner):
+                yield from formulas(inner)
+
+
+def _of(text: Text) -> Iterator[Math]:
+    return (part for part in text if isinstance(part, FORMULA))
+
+
+def short_of_digits(document: Document) -> bool:
+    """Whether any number in it was rounded."""
+    return any(map(rounded, formulas(document.sections)))

@@ -1,0 +1,204 @@
+"""The graphs: of the components, of the system in each subspace, their incidence, cutsets and circuits."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linegraph.domains import ROTATION, SPATIAL, TRANSLATION
+from linegraph.drawing.mechanism import mechanism_svg
+from linegraph.drawing.pictures import chosen_panels, graph_svg
+from linegraph.errors import ModelError
+from linegraph.notation.tree import ZERO, Name
+from linegraph.report.document import (
+    Block,
+    Code,
+    Formulas,
+    Matrix,
+    Picture,
+    Row,
+    Section,
+    Table,
+    Text,
+    said,
+)
+from linegraph.report.system import count, listed
+
+if TYPE_CHECKING:
+    from linegraph.graph import Edge, Projection
+    from linegraph.report.subject import Subject
+    from linegraph.topology import Topology
+
+MOST_WRITTEN = 16
+"""Of a graph with more edges equations are not written a second time for rotation."""
+
+
+def topologies(subject: Subject) -> list[tuple[str, Topology]]:
+    """The tree of every subspace that has edges; once where two subspaces have the same."""
+    return [
+        (" and ".join(map(called, names)), topology)
+        for names, topology in chosen_panels(subject.derivation)
+    ]
+
+
+def called(domain: str) -> str:
+    """A subspace in words: ``rotation_1d`` is rotation in one dimension."""
+    if domain.endswith("_1d"):
+        return f"{domain.removesuffix('_1d')} in one dimension"
+    return {"electrical": "electricity", "hydraulic": "hydraulics", "thermal": "heat",
+            "magnetic": "magnetism"}.get(domain, domain.replace("_", " "))  # fmt: skip
+
+
+def terminal_graphs(subject: Subject) -> Section:
+    """The edges of every component."""
+    order: dict[str, dict[str, tuple[Edge, list[str]]]] = {}
+    for projection in subject.derivation.graph.projections:
+        for edge in projection.edges:
+            own = order.setdefault(edge.component, {})
+            own.setdefault(edge.name, (edge, []))[1].append(projection.domain)
+    rows = []
+    for component, edges in order.items():
+        for k, (edge, domains) in enumerate(edges.values()):
+            first: Text = (Code(component),) if k == 0 else ()
+            where = listed([called(d) for d in domains])
+            rows.append(
+                (first, (Code(edge.name),), (Code(edge.tail), " → ", Code(edge.head)), (where,))
+            )
+    text = (
+        "Each component shows its terminals only; between two of them an edge is measured, and the edges of "
+        "a component are its terminal graph."
+    )
+    if subject.model.bodies:
+        text += (
+            " A body has an inertia edge from ground to its mass centre and a rigid arm from there to each "
+            "of its frames; joints, elements and loads are edges between frames."
+        )
+    table = Table(("component", "edge", "tail → head", "subspace"), tuple(rows))
+    return Section("Terminal graphs of the components", (said(text), table))
+
+
+def system_graph(subject: Subject) -> Section:
+    """The united graph, subspace by subspace."""
+    text = (
+        "Terminals of one name are one vertex: so the terminal graphs unite to the system graph, which has "
+        "one part for each subspace."
+    )
+    blocks: list[Block] = [said(text), *_mechanism(subject)]
+    for title, topology in topologies(subject):
+        blocks.append(Section(f"In {title}", tuple(_graph(subject, topology))))
+    return Section("The system graph", tuple(blocks))
+
+
+def _mechanism(subject: Subject) -> list[Block]:
+    """The mechanism as it stands; none where parameters have no values."""
+    if not subject.model.bodies:
+        return []
+    try:
+        svg = mechanism_svg(subject.derivation)
+    except ModelError as error:
+        return [said(f"There is no sketch: {error.thing} {error.problem}.")]
+    return [Picture(svg, "The mechanism.")]
+
+
+def _graph(subject: Subject, topology: Topology) -> list[Block]:
+    projection = topology.projection
+    size = (
+        f"{count(len(projection.vertices), 'vertex', 'vertices')} and "
+        f"{count(len(projection.edges), 'edge')}: {count(len(topology.branches), 'branch', 'branches')} and "
+        f"{count(len(topology.chords), 'chord')}."
+    )
+    about = f"The system graph in {called(projection.domain)}; edges of the tree are bold."
+    names = next(n for n, t in chosen_panels(subject.derivation) if t is topology)
+    picture = Picture(graph_svg(subject.derivation, names), about, topology)
+    return [said(f"It has {size}"), picture, *_incidence(projection)]
+
+
+def _incidence(projection: Projection) -> list[Block]:
+    matrix = projection.incidence
+    return [
+        said("Its incidence matrix; by the vertex postulate the through variables at every vertex, each with "
+             "its sign there, add up to zero:"),
+        Matrix("", matrix, ("vertices", "edges")),
+    ]  # fmt: skip
+
+
+# ---- topological equations
+
+
+def topological(subject: Subject) -> Section:
+    """Cutset and circuit equations, written out and as matrices."""
+    blocks: list[Block] = [
+        said(
+            "Cutting a branch separates the vertices beyond it: the through variables over the cut add up to "
+            "zero, one equation for each branch. A chord closes a circuit with branches: the across "
+            "variables around it add up to zero, one equation for each chord. The two matrices are one: each "
+            "is the negative transpose of the other."
+        )
+    ]
+    formulation = subject.derivation.formulation
+    pairs: list[tuple[str, str, Topology]] = []
+    if subject.model.bodies:
+        pairs.append((TRANSLATION.name, "translation", formulation.translation))
+        pairs.append((ROTATION.name, "rotation", formulation.rotation))
+    if subject.network is not None:
+        pairs += [
+            (t.projection.domain, called(t.projection.domain), t)
+            for t in subject.network.topologies
+        ]
+    shown: list[object] = []
+    for domain, title, topology in pairs:
+        if topology.cutset in shown and len(topology.projection.edges) > MOST_WRITTEN:
+            through, across = subject.through(domain, ""), subject.across(domain, "")
+            text = ("The same equations as in translation, with torques ", Name(through.letter, bold=True),
+                    " about the origin of ground for forces and angular velocities ",
+                    Name(across.letter, bold=True), " for velocities.")  # fmt: skip
+            blocks.append(Section(f"In {title}", (said(*text),)))
+            continue
+        inner = _equations(subject, domain, topology)
+        if topology.branches and topology.chords:
+            if topology.cutset in shown:
+                inner.append(said("The matrices are those in translation."))
+            else:
+                inner += [
+                    said("A of the cutset equations [U A] Y = 0:"),
+                    Matrix("A", topology.cutset, ("branches", "chords")),
+                    said("B of the circuit equations [B U] X = 0:"),
+                    Matrix("B", topology.circuit, ("chords", "branches")),
+                ]
+                shown.append(topology.cutset)
+        blocks.append(Section(f"In {title}", tuple(inner)))
+    return Section("Cutset and circuit equations", tuple(blocks))
+
+
+def _equations(subject: Subject, domain: str, topology: Topology) -> list[Block]:
+    blocks: list[Block] = []
+    cutset, circuit = topology.cutset, topology.circuit
+    cuts = [
+        Row(
+            subject.combined(
+                cutset, i, subject.through(domain, name), lambda e: subject.through(domain, e)
+            ),
+            ZERO,
+        )
+        for i, name in enumerate(cutset.rows)
+    ]
+    circuits = [
+        Row(
+            subject.combined(
+                circuit, i, subject.across(domain, name), lambda e: subject.across(domain, e)
+            ),
+            ZERO,
+        )
+        for i, name in enumerate(circuit.rows)
+    ]
+    if domain in SPATIAL and domain == ROTATION.name:
+        blocks.append(said(
+            "Torques are those about the origin of ground here, marked by a capital letter, so that the "
+            "forces' levers are in them; the connecting equations say how."))  # fmt: skip
+    if cuts:
+        blocks += [said("Cutset equations:"), Formulas(tuple(cuts))]
+    if circuits:
+        blocks += [said("Circuit equations:"), Formulas(tuple(circuits))]
+    return blocks or [said("It has neither cutsets nor circuits.")]
+
+
+__all__ = ["called", "system_graph", "terminal_graphs", "topological"]

@@ -1,0 +1,156 @@
+"""Long equations as a person can follow them: named intermediates, grouped by joint and body."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from linegraph.expression import SYMBOL, Node
+from linegraph.notation.tree import FUNCTION, ZERO, Math, Name
+from linegraph.program import Program
+from linegraph.programs import module_of
+from linegraph.report.document import Group, Listing, Row
+from linegraph.report.nodes import Nodes
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from linegraph.report.subject import Subject
+
+CONSTRAINTS = ("constraints", "constraint_jacobian", "constraint_bias")
+
+ONLY = {
+    "equations": ("equations", ("equations",)),
+    "constrained": ("constraints", ("equations", *CONSTRAINTS)),
+    "constraints": ("constraints", CONSTRAINTS),
+    "reactions": ("reactions", ("reactions_at",)),
+}
+"""For each listing the functions to derive, and which of them are shown."""
+
+LETTERS = {"gamma": "γ", "gam": "γ", "phi": "φ"}
+
+
+def symbols_of(subject: Subject) -> Callable[[str, Any], Math]:
+    """The look of the symbols that programs read."""
+    arguments = {
+        "q": subject.q_names,
+        "v": subject.v_names,
+        "a": subject.a_names,
+        "u": subject.u_names,
+        "lam": [quantity.name for quantity in subject.multipliers],
+        "loop": [] if subject.network is None else list(subject.network.loop_names),
+    }
+
+    def symbol(argument: str, place: Any) -> Math:
+        if argument in arguments:
+            return subject.look.name(arguments[argument][place])
+        return subject.look.name(argument if place is None else str(place))
+
+    return symbol
+
+
+def listed_program(subject: Subject, which: str) -> tuple[Listing, list[Row], int]:
+    """The steps of a program, its results, and how many operations it has."""
+    only, shown = ONLY[which]
+    module = module_of(
+        subject.derivation,
+        "report",
+        folded=subject.folded,
+        about=(),
+        only=(only,) if which != "constrained" else ("constraints", "equations"),
+        prologue=False,
+    )
+    programs = [p for p in module.programs if isinstance(p, Program) and p.name in shown]
+    groups: list[Group] = []
+    results: list[Row] = []
+    listing = _Steps(subject)
+    for program in programs:
+        groups += listing.groups(program)
+        results += listing.results(program)
+    return Listing(tuple(groups)), results, sum(program.operations for program in programs)
+
+
+class _Steps:
+    """Names steps in order, through several programs."""
+
+    def __init__(self, subject: Subject) -> None:
+        self._subject = subject
+        self._symbol = symbols_of(subject)
+        self._count = 0
+        taken = {(name.letter, name.subs) for name in subject.look.names.values()}
+        size = range(1, len(subject.q_names) + 1)
+        self._trig = {
+            op: next(x for x in letters if not any((x, (str(k),)) in taken for k in size))
+            for op, letters in (("sin", ("s", "S", "σ")), ("cos", ("c", "C", "κ")))
+        }
+        free = (x for x in ("z", "Z", "y", "ζ", "η") if not any(letter == x for letter, _ in taken))
+        self._letter = next(free, "z'")
+        self._known: dict[tuple[int, bool], Name] = {}
+
+    def groups(self, program: Program) -> list[Group]:
+        """The steps of a program under their labels."""
+        self._nodes = Nodes(self._symbol, program.turned)
+        # programs share nodes: what has a name already keeps it
+        for (index, turned), name in self._known.items():
+            if turned == (index in program.turned):
+                self._nodes.known[index] = name
+        found: list[tuple[str, list[Row]]] = []
+        for node in program.steps:
+            if not found or found[-1][0] != node.label:
+                found.append((node.label, []))
+            if node.index in self._nodes.known:
+                continue
+            right = self._nodes.named(node)
+            name = self._name(node)
+            self._nodes.known[node.index] = name
+            self._known[node.index, node.index in program.turned] = name
+            found[-1][1].append(Row(name, right))
+        return [Group(label.replace("->", "→"), tuple(rows)) for label, rows in found if rows]
+
+    def _name(self, node: Node) -> Name:
+        a = node.a
+        if node.op in self._trig and isinstance(a, Node) and a.op == SYMBOL and a.a == "q":
+            return Name(self._trig[node.op], (str(a.b + 1),), role=FUNCTION, place=a.b)
+        self._count += 1
+        return Name(self._letter, (str(self._count),), place=self._count)
+
+    def results(self, program: Program) -> list[Row]:
+        """What a program returns; what is zero, or stands there already, is left out."""
+        rows = []
+        for result in program.results:
+            columns = result.shape[1] if len(result.shape) > 1 else 0
+            for k, entry in enumerate(result.entries):
+                i, j = divmod(k, columns) if columns else (k, 0)
+                if (
+                    columns
+                    and j < i
+                    and columns == result.shape[0]
+                    and _alike(result, i, j, columns)
+                ):
+                    continue
+                tree = self._nodes(entry)
+                if tree == ZERO:
+                    continue
+                rows.append(Row(self._result(result.name, i, j, bool(columns)), tree))
+        return rows
+
+    def _result(self, name: str, i: int, j: int, square: bool) -> Name:
+        if name == "R":
+            return self._reaction(i)
+        letter = LETTERS.get(name, name)
+        return Name(letter, (str(i + 1), str(j + 1)) if square else (str(i + 1),))
+
+    def _reaction(self, place: int) -> Name:
+        """Of each joint force and torque, then what flows through the edges of networks."""
+        joints, network = list(self._subject.tree.ends), self._subject.network
+        joint, component = divmod(place, 6)
+        if joint < len(joints):
+            letter = "f" if component < 3 else "τ"
+            return Name(letter, (joints[joint], "xyz"[component % 3]))
+        assert network is not None
+        edges = [branch for branch in network.branches if not branch.port.spatial]
+        edge = edges[place - 6 * len(joints)]
+        return self._subject.through(edge.port.domain, edge.name)
+
+
+def _alike(result: Any, i: int, j: int, columns: int) -> bool:
+    return bool(result.entries[i * columns + j] is result.entries[j * columns + i])

@@ -1,0 +1,239 @@
+"""A report as a LaTeX article; it needs amsmath, booktabs and the like, and no file but itself."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linegraph.notation.latex import Latex, escaped
+from linegraph.notation.plain import Plain
+from linegraph.notation.tree import Name
+from linegraph.report.document import (
+    Block,
+    Code,
+    Document,
+    Formulas,
+    Listing,
+    Matrix,
+    Paragraph,
+    Picture,
+    Row,
+    Section,
+    Table,
+    Text,
+)
+from linegraph.report.lines import broken, typeset
+from linegraph.report.text import said as plain
+from linegraph.report.text import visible_words
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from linegraph.graph import IntegerMatrix
+
+WIDTH = 84
+"""Characters of plain text that a line of formulas holds."""
+
+MOST_COLUMNS = 18
+NARROW = 16
+"""A column of so many characters is never broken."""
+
+LEVELS = ("section", "subsection", "subsubsection", "paragraph")
+
+HEAD = r"""\documentclass[11pt,a4paper,fleqn]{article}
+\usepackage[utf8]{inputenc}
+\usepackage[T1]{fontenc}
+\usepackage{lmodern}
+\usepackage{textcomp}
+\usepackage[a4paper,margin=22mm]{geometry}
+\usepackage{amsmath}
+\usepackage{amssymb}
+\usepackage{array}
+\usepackage{longtable}
+\usepackage{booktabs}
+\usepackage{graphicx}
+\usepackage[hidelinks]{hyperref}
+\allowdisplaybreaks
+\setlength{\parindent}{0pt}
+\setlength{\parskip}{0.6em plus 0.2em}
+\setlength{\LTleft}{0pt}
+\setlength{\jot}{4pt}
+\setlength{\mathindent}{1.5em}
+\setcounter{MaxMatrixCols}{40}
+\emergencystretch=3em
+\newcolumntype{L}[1]{>{\raggedright\arraybackslash}p{#1\linewidth}}
+"""
+
+
+def render(document: Document) -> str:
+    """The text of a report."""
+    lines = [
+        HEAD + rf"\title{{{escaped(document.title)}}}",
+        r"\author{}",
+        r"\date{}",
+        r"\begin{document}",
+        r"\abovedisplayskip=4pt plus 2pt \abovedisplayshortskip=4pt plus 2pt",
+        r"\belowdisplayskip=4pt plus 2pt \belowdisplayshortskip=4pt plus 2pt",
+        r"\maketitle",
+    ]
+    if document.about:
+        lines.append(rf"{{\raggedright {escaped(document.about)}\par}}")
+    lines.append(r"{\setlength{\parskip}{0pt}\tableofcontents}")
+    for section in document.sections:
+        lines += _section(section, 0)
+    return "\n".join([*lines, r"\end{document}"]) + "\n"
+
+
+def _section(section: Section, depth: int) -> list[str]:
+    title = escaped(section.title[:1].upper() + section.title[1:])
+    lines = ["", rf"\{LEVELS[min(depth, 3)]}{{{title}}}"]
+    for block in section.blocks:
+        if isinstance(block, Section):
+            lines += _section(block, depth + 1)
+        else:
+            # a display without an empty line before it belongs to its paragraph
+            lines += [*([] if isinstance(block, Formulas) else [""]), *_block(block)]
+    return lines
+
+
+def _block(block: Block) -> list[str]:
+    match block:
+        case Paragraph(text):
+            return [said(text)]
+        case Table(head, rows):
+            return _table(head, rows)
+        case Matrix():
+            return _matrix(block.matrix)
+        case Formulas(rows):
+            return _display(rows)
+        case Listing(groups):
+            lines: list[str] = []
+            for group in groups:
+                lines += [rf"\textit{{{escaped(group.label)}}}", *_display(group.rows)]
+            return lines
+        case Picture():
+            return []
+    raise TypeError(block)
+
+
+def said(text: Text) -> str:
+    """Words, names and formulas in a line."""
+    return "".join(_inline(part) for part in text)
+
+
+def _inline(part: object) -> str:
+    if isinstance(part, str):
+        inner = visible_words(part)
+        stripped = inner.strip()
+        return inner.replace(stripped, escaped(stripped)) if stripped else inner
+    if isinstance(part, Code):
+        command = "textbf" if part.strong else "textsf"
+        return rf"\{command}{{{breakable(part.text)}}}"
+    return f"${Latex()(part)}$"  # type: ignore[arg-type]
+
+
+def breakable(text: str) -> str:
+    """A name that may be broken behind its strokes and points."""
+    shown = escaped(text)
+    for stop in ("/", ".", r"\_"):
+        shown = shown.replace(stop, rf"{stop}\allowbreak{{}}")
+    return shown
+
+
+def aligned(rows: Sequence[Row], width: int) -> list[str]:
+    """Equations below each other, long ones broken; aligned at their signs where the left sides are short."""
+    level = all(isinstance(row.left, Name) for row in rows)
+    lines: list[str] = []
+    for k, row in enumerate(rows):
+        end = r" \\" if k + 1 < len(rows) else ""
+        own = _named(row, width) if level else _broken(row, width)
+        lines += [*(line + r" \\" for line in own[:-1]), own[-1] + end]
+    return lines
+
+
+def _named(row: Row, width: int) -> list[str]:
+    """A name and what it is."""
+    used = typeset(Plain()(row.left)) + 3
+    first, *others = broken(row.right, Latex(), width - 4, max(0, used - 4), typeset)
+    left = Latex()(row.left)
+    return [f"{left} &{row.sign} {first}", *(rf"&\qquad {line}" for line in others)]
+
+
+def _broken(row: Row, width: int) -> list[str]:
+    """Both sides in a row."""
+    lines = broken(row.left, Latex(), width - 4, 0, typeset)
+    used = typeset(Plain()(row.left)) + 3 if len(lines) == 1 else width // 2
+    first, *others = broken(row.right, Latex(), width - 4, min(used, width - 8), typeset)
+    lines[-1] += f" {row.sign} {first}"
+    return [f"&{lines[0]}", *(rf"&\qquad {line}" for line in (*lines[1:], *others))]
+
+
+def _display(rows: Sequence[Row]) -> list[str]:
+    return [r"\begin{align*}", *aligned(rows, WIDTH), r"\end{align*}"]
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[Text]]) -> list[str]:
+    widths = _widths(head, rows)
+    columns = "".join(f"L{{{width:.3f}}}" for width in widths)
+    lines = [
+        r"{\small\setlength{\tabcolsep}{3pt}",
+        rf"\begin{{longtable}}{{@{{}}{columns}@{{}}}}",
+        r"\toprule",
+        f"{' & '.join(escaped(cell) for cell in head)} \\\\",
+        r"\midrule",
+        r"\endhead",
+    ]
+    lines += [f"{' & '.join(said(cell) for cell in row)} \\\\" for row in rows]
+    return [*lines, r"\bottomrule", r"\end{longtable}}"]
+
+
+def _widths(head: Sequence[str], rows: Sequence[Sequence[Text]]) -> list[float]:
+    """Of each column its share of the line: narrow ones as wide as they are, the others what is left."""
+    longest = [
+        max([len(title), 3, *(len(plain(row[j])) for row in rows)]) for j, title in enumerate(head)
+    ]
+    needed = [0.0155 * size + 0.012 for size in longest]
+    gaps = 0.014 * len(head)
+    if sum(needed) + gaps <= 1:
+        return needed
+    kept = [size <= NARROW for size in longest]
+    rest = 1 - gaps - sum(w for w, keep in zip(needed, kept, strict=True) if keep)
+    shares = [
+        0.0 if keep else min(size, 60) ** 0.7 for size, keep in zip(longest, kept, strict=True)
+    ]
+    whole = sum(shares) or 1
+    return [
+        w if keep else rest * share / whole
+        for w, keep, share in zip(needed, kept, shares, strict=True)
+    ]
+
+
+def _matrix(matrix: IntegerMatrix) -> list[str]:
+    """With names along both sides, those of columns upright; wide ones row by row."""
+    if not matrix.rows or not matrix.columns:
+        return ["(empty)"]
+    if len(matrix.columns) > MOST_COLUMNS:
+        return _sums(matrix)
+    columns = "l" + "c" * len(matrix.columns)
+    names = [rf"\rotatebox{{90}}{{\textsf{{{escaped(name)}}}}}" for name in matrix.columns]
+    lines = [
+        r"{\footnotesize\setlength{\tabcolsep}{4pt}",
+        rf"\begin{{longtable}}{{{columns}}}",
+        f" & {' & '.join(names)} \\\\",
+        r"\midrule",
+        r"\endhead",
+    ]
+    for name, row in zip(matrix.rows, matrix, strict=True):
+        cells = (f"${value:+d}$" if value else r"$\cdot$" for value in row)
+        lines.append(rf"\textsf{{{escaped(name)}}} & {' & '.join(cells)} \\")
+    return [*lines, r"\end{longtable}}"]
+
+
+def _sums(matrix: IntegerMatrix) -> list[str]:
+    lines = [r"{\small\raggedright"]
+    for name, row in zip(matrix.rows, matrix.entries, strict=True):
+        terms = [
+            rf"${'+' if value > 0 else '-'}$\,\textsf{{{breakable(matrix.columns[j])}}}"
+            for j, value in sorted(row.items())
+        ]
+        lines.append(rf"\textsf{{{breakable(name)}}}: {' '.join(terms) or '0'}\par")
+    return [*lines, "}"]

@@ -1,0 +1,311 @@
+"""Terminal equations: what each component's law is, inside its own edges."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from linegraph.body import MASS_CENTER
+from linegraph.domains import SPATIAL
+from linegraph.elements import Element, Load
+from linegraph.elements.load import BODY
+from linegraph.expression import SUB, SYMBOL, Node
+from linegraph.joints.base import BY_INPUT
+from linegraph.network.static import LOOP
+from linegraph.notation.expressions import number
+from linegraph.notation.plain import Plain
+from linegraph.notation.tree import (
+    ZERO,
+    Listed,
+    Math,
+    Name,
+    Over,
+    Product,
+    Relation,
+    Sum,
+    negated,
+    total,
+)
+from linegraph.report.document import Block, Code, Formulas, Inline, Row, Section, Table, Text, said
+from linegraph.report.nodes import Nodes
+from linegraph.report.system import letter
+from linegraph.residues import CONSTANT
+from linegraph.vector import times
+
+LONGEST_CELL = 60
+"""Motions of joints that take more characters stand below their table."""
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from linegraph.joints import Joint
+    from linegraph.network.edges import Branch
+    from linegraph.report.subject import Subject
+
+
+def vector(text: str, edge: str, *, dots: int = 0, before: str = "") -> Name:
+    """A vector of an edge."""
+    return Name(text, (edge,), dots=dots, bold=True, before=before)
+
+
+def dotted(left: Math, right: Math) -> Math:
+    """A scalar product."""
+    return Product((left, right), "·")
+
+
+def crossed(left: Math, right: Math) -> Math:
+    """A vector product."""
+    return Product((left, right), "×")
+
+
+def terminal_equations(subject: Subject) -> Section:
+    """The laws of all components."""
+    blocks: list[Block] = [
+        said(
+            "Terminal equations tie the across variables of a component's edges to their through variables."
+        )
+    ]
+    if subject.model.bodies:
+        blocks.append(Section("Bodies", _bodies(subject)))
+    if subject.model.joints:
+        blocks.append(Section("Joints", _joints(subject)))
+    if subject.model.constraints or subject.model.relations:
+        blocks.append(Section("Constraints", _constraints(subject)))
+    if subject.model.force_elements:
+        blocks.append(Section("Force elements", _elements(subject)))
+    if subject.network is not None:
+        blocks.append(Section("Components of networks", tuple(network_laws(subject))))
+    return Section("Terminal equations", tuple(blocks))
+
+
+def _bodies(subject: Subject) -> tuple[Block, ...]:
+    rows = []
+    for body in subject.model.bodies.values():
+        edge = f"{body.name}/inertia"
+        mass = subject.value(body.mass)
+        if mass != ZERO:
+            pull: Math = vector("r", f"{body.name}.{MASS_CENTER}", dots=2)
+            if any(x != 0 for x in subject.model.gravity):
+                pull = Sum(((False, pull), (True, letter("g"))))
+            factors = mass.factors if isinstance(mass, Product) else (mass,)
+            rows.append(Row(vector("f", edge), negated(Product((*factors, pull)))))
+        if any(x != 0 for x in body.inertia):
+            spin = vector("ω", body.name)
+            tensor = vector("J", body.name)
+            terms = Sum(((False, Product((tensor, spin.rate()))),
+                         (False, crossed(spin, Product((tensor, spin))))))  # fmt: skip
+            rows.append(Row(vector("τ", edge), negated(terms)))
+    text = said(
+        "The inertia edge of a body exerts d'Alembert's force and torque on its mass centre, the weight with "
+        "it: here ", Name("r", bold=True), " is the position of the mass centre, ", Name("ω", bold=True),
+        " the angular velocity of the body and ", Name("J", bold=True), " its central inertia. Rigid "
+        "arms have no law for their through variables: their across variables are fixed in the body."
+    )  # fmt: skip
+    return (text, Formulas(tuple(rows))) if rows else (text,)
+
+
+def _joints(subject: Subject) -> tuple[Block, ...]:
+    rows = []
+    long: list[Row] = []
+    for joint in subject.model.joints:
+        moves, pushes = _joint(subject, joint)
+        found = [part for part in moves if isinstance(part, Relation)]
+        if sum(len(Plain()(part)) for part in found) > LONGEST_CELL:
+            long += [row for part in found for row in _by_components(part)]
+            moves = ("below",)
+        rows.append(((Code(joint.name),), moves, pushes))
+    text = (
+        "A joint leaves its head free to move against its tail as its velocities say; in every other "
+        "direction it holds it with a reaction that does no work, so only the power of its effort remains. "
+        "Components are those in the axes of its head."
+    )
+    table = Table(("joint", "motion of the head against the tail", "effort"), tuple(rows))
+    return (said(text), table, *([Formulas(tuple(long))] if long else []))
+
+
+def _by_components(part: Relation) -> list[Row]:
+    """A vector that is too long for a cell, component by component."""
+    assert isinstance(part.left, Name)
+    assert isinstance(part.right, Listed)
+    subs = ((*part.left.subs, axis) for axis in "xyz")
+    return [
+        Row(Name(part.left.letter, sub), entry)
+        for sub, entry in zip(subs, part.right.entries, strict=True)
+    ]
+
+
+def _joint(subject: Subject, joint: Joint) -> tuple[Text, Text]:
+    """The relative motion of a joint in its head's axes, and what its through variables are along it."""
+    own = joint.resolved(subject.resolve)
+    names = [quantity.name for quantity in joint.positions()]
+    rates = [_rate(subject, quantity.name, names) for quantity in joint.velocities()]
+    algebra = subject.algebra
+    q, v = (tuple(algebra.symbol("", name) for name in found) for found in (names, rates))
+    motion = own.motion(algebra, q, v)
+    axes = own.alignment()
+    shown: list[Inline] = []
+    for symbol, directions in (("ω", motion.angular), ("v", motion.linear)):
+        turned = [times(axes, d) for d in directions]
+        entries = [sum(d[k] * x for d, x in zip(turned, v, strict=True)) for k in range(3)]
+        trees = tuple(subject.expression(e) for e in entries)
+        if any(tree != ZERO for tree in trees):
+            shown += [", "] if shown else []
+            shown.append(Relation(vector(symbol, joint.name), "=", Listed(trees)))
+    if not shown:
+        shown.append("none")
+    efforts: list[Inline] = []
+    for quantity in joint.velocities() if joint.effort and joint.drive is None else ():
+        name = f"u_{quantity.name}" if f"u_{quantity.name}" in subject.look.names else quantity.name
+        efforts += [", "] if efforts else []
+        efforts.append(subject.look.name(name))
+    if joint.drive is not None:
+        by = "inputs" if joint.drive == BY_INPUT else "the time"
+        efforts = [f"what drives it; its motion is prescribed by {by}"]
+    held = 6 - joint.freedoms
+    return tuple(shown), tuple(efforts) if efforts else (f"none; {held} reactions",)
+
+
+def _rate(subject: Subject, name: str, positions: Sequence[str]) -> str:
+    return f"{name}_dot" if name in positions else name
+
+
+def _constraints(subject: Subject) -> tuple[Block, ...]:
+    rows = []
+    for limit in subject.model.constraints:
+        loose = [q.name for q, _ in limit.equations()]
+        parts: list[Inline] = []
+        for name in loose:
+            parts += [", "] if parts else []
+            parts.append(subject.look.name(name))
+        about = "; ".join(q.about for q, _ in limit.equations())
+        rows.append(((Code(limit.name),), (limit.kind,), tuple(parts), (about,)))
+    for relation in subject.model.relations:
+        quantity = relation.equation()
+        rows.append(
+            (
+                (Code(relation.name),),
+                ("relation",),
+                (subject.look.name(quantity.name),),
+                (quantity.about,),
+            )
+        )
+    text = "The across variable of a constraint is known and its through variable is not: a multiplier."
+    return (said(text), Table(("constraint", "type", "multipliers", "meaning"), tuple(rows)))
+
+
+# ---- force elements
+
+
+def _elements(subject: Subject) -> tuple[Block, ...]:
+    rows: list[Row] = []
+    for element in subject.model.force_elements:
+        rows += (
+            _load(subject, element) if isinstance(element, Load) else [_element(subject, element)]
+        )
+    text: Text = (
+        "A positive through variable ", Name("y"), " of an element pulls: its two points together, along the "
+        "line between them whose length is ", Name("ℓ"), ", or the coordinate of its joint back. A load is "
+        "the force and the torque given.")  # fmt: skip
+    turning = [e.name for e in subject.model.force_elements if getattr(e, "axes", "") == BODY]
+    blocks: list[Block] = [said(*text), Formulas(tuple(rows))]
+    if turning:
+        blocks.append(said("In the axes of the body they act on: ", Code(", ".join(turning)), "."))
+    return tuple(blocks)
+
+
+def _element(subject: Subject, element: Element) -> Row:
+    x, v = element_motion(subject, element)
+    law = element.through(subject.algebra, x, v, subject.resolve)
+    return Row(pull_of(element.name), subject.expression(law))
+
+
+def pull_of(element: str) -> Name:
+    """The through variable of a force element."""
+    return Name("y", (element,))
+
+
+def element_motion(subject: Subject, element: Element) -> tuple[Any, Any]:
+    """Symbols of an element's across variable and of its rate."""
+    if element.joint is not None:
+        joint = next(j for j in subject.model.joints if j.name == element.joint)
+        name = joint.positions()[0].name
+        subject.look.names.setdefault(f"{name}_dot", subject.look.name(name).rate())
+    else:
+        name = f"length({element.name})"
+        subject.look.names[name] = Name("ℓ", (element.name,))
+        subject.look.names[f"{name}_dot"] = subject.look.names[name].rate()
+    symbol = subject.algebra.symbol
+    return symbol("", name), symbol("", f"{name}_dot")
+
+
+def _load(subject: Subject, load: Load) -> list[Row]:
+    rows = []
+    for symbol, parts in (("f", load.force), ("τ", load.torque)):
+        value = subject.vector(parts)
+        if value != ZERO:
+            rows.append(Row(vector(symbol, load.name), value))
+    return rows
+
+
+# ---- networks
+
+
+def network_laws(subject: Subject) -> list[Block]:
+    """Laws of all components, by component."""
+    network = subject.network
+    assert network is not None
+    branch = {b.name: b for b in network.branches}
+    trees = Nodes(lambda kind, place: _symbol(subject, branch, kind, place))
+    rows: list[Row] = []
+    for static in network.laws.statics:
+        rows.append(_solved(trees, static.zero))
+    for store in (*network.laws.stores, *network.laws.spatial):
+        change = Over("d/dt", "", trees(store.charge))
+        right = total([(False, change), (False, trees(store.rest))], ordered=False)
+        rows.append(Row(_symbol(subject, branch, *store.dual), right))
+    for own in network.laws.own:
+        rows.append(Row(_symbol(subject, branch, *own.key).rate(), trees(own.rate)))  # type: ignore[union-attr]
+    text = (
+        "The laws of the components; what stores has the rate of its charge in it. A port in mechanics "
+        "has the coordinate of its joint for its displacement and pulls it back."
+    )
+    return [said(text), Formulas(tuple(rows))]
+
+
+def _solved(trees: Nodes, zero: Any) -> Row:
+    """``X = ...`` where a law is the difference of a variable and something."""
+    if isinstance(zero, Node) and zero.op == SUB and isinstance(zero.a, Node):
+        a, b = zero.a, zero.b
+        if a.op == SYMBOL and a.a in ("X", "Y", "w"):
+            return Row(trees(a), trees(b))
+    return Row(trees(zero), ZERO)
+
+
+def port_variables(subject: Subject, branch: Branch) -> tuple[Math, Math]:
+    """Across and through variable of any edge of a network."""
+    names = {branch.name: branch}
+    kind = "w" if branch.port.spatial else "X"
+    return _symbol(subject, names, kind, branch.name), _symbol(subject, names, "Y", branch.name)
+
+
+def _symbol(subject: Subject, branches: dict[str, Branch], kind: str, place: Any) -> Math:
+    """A symbol of a network's DAG."""
+    assert subject.network is not None
+    if kind == CONSTANT:
+        return number(float(Fraction(place)))
+    if kind == LOOP:
+        return subject.look.name(subject.network.loop_names[place])
+    if kind in ("X", "Y") and not branches[place].port.spatial:
+        domain = branches[place].port.domain
+        assert domain not in SPATIAL
+        return (subject.across if kind == "X" else subject.through)(domain, place)
+    if kind == "Y":
+        return Name("F", (place,))
+    if kind in ("w", "x"):
+        joint = branches[place].port.joint
+        own = subject.look.name(joint) if joint is not None else Name("ℓ", (place,))
+        return own.rate() if kind == "w" else own
+    if kind == "s":
+        found = next(o for o in subject.network.laws.own if o.key == (kind, place))
+        return subject.look.name(found.quantity.name)
+    return subject.look.name(kind if place is None else str(place))
