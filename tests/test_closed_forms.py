@@ -49,13 +49,13 @@ STEP = 1e-3
 SLOPE = 1e-8  # differences of the fourth order
 LEVELS = ("none", "fast", "full")
 READABLE = 36
-WHOLE = (*range(24), 24, 25, 28, 33)
+LARGE = (20, 32)
+"""Free bodies that carry others: nobody reads their equations, which are not simplified here."""
+
+WHOLE = tuple(seed for seed in (*range(24), 24, 25, 28, 33) if seed not in LARGE)
 """Readable systems that are simplified in full: of two bodies at most, and a few of three."""
 
-ANYTHING = (
-    *(0, 1, 2, 6, 12, 13, 14, 18, 19, 20, 24, 26, 30),
-    *(31, 32, 36, 37, 38, 42, 44, 48, 56),
-)
+ANYTHING = (*(0, 2, 6, 12, 13, 14, 18, 19, 20, 24, 26), *(30, 31, 32, 36, 37, 38, 42, 44, 48, 56))
 """Systems of everything with three bodies at most, without those that sympy takes long to write down."""
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
@@ -159,7 +159,7 @@ def state_of(derivation: Derivation, seed: int, parameters: Any = None) -> State
 
 def agree(derivation: Derivation, level: str, seed: int, *, reactions: bool = True) -> None:
     """Everything a level gives, at two states."""
-    found = derivation.closed_form(level)
+    found = derivation.symbolic if level == "full" else derivation.closed_form(level)
     for k in range(2):
         state = state_of(derivation, 2 * seed + k)
         n, q, v = state.numeric, state.q, state.v
@@ -193,11 +193,15 @@ def turns(seed: int) -> bool:
 # ---- every level, every quantity
 
 
-@pytest.mark.parametrize("level", ["none", "fast"])
 @pytest.mark.parametrize("seed", range(READABLE))
-def test_closed_forms_are_the_numbers(seed: int, level: str) -> None:
+def test_derived_forms_are_the_numbers(seed: int) -> None:
     """Symbols and numbers take turns, and so do kinds of joints."""
-    agree(readable(seed, turns(seed)), level, seed, reactions=seed % 3 == 0)
+    agree(readable(seed, turns(seed)), "none", seed, reactions=seed % 3 == 0)
+
+
+@pytest.mark.parametrize("seed", [s for s in range(READABLE) if s not in LARGE])
+def test_fast_closed_forms_are_the_numbers(seed: int) -> None:
+    agree(readable(seed, turns(seed)), "fast", seed, reactions=seed % 3 == 0)
 
 
 @pytest.mark.parametrize("seed", WHOLE)
@@ -209,7 +213,7 @@ def test_full_closed_forms_are_the_numbers(seed: int) -> None:
 def test_whatever_a_model_may_say_has_a_form(seed: int) -> None:
     """Systems of everything, oblique and all in numbers, not simplified."""
     derivation = lg.derive(random_systems.random_system(seed).model)
-    agree(derivation, "none", seed, reactions=seed % 4 == 0)
+    agree(derivation, "none", seed, reactions=seed % 12 == 0)
 
 
 @pytest.mark.parametrize("seed", range(0, 48, 6))
@@ -251,7 +255,8 @@ def example(name: str) -> Derivation:
 @pytest.mark.parametrize("seed", WHOLE)
 def test_fully_simplified_forms_are_no_longer(seed: int) -> None:
     derivation = readable(seed, turns(seed))
-    raw, fast, full = (derivation.closed_form(level) for level in LEVELS)
+    raw, fast = (derivation.closed_form(level) for level in ("none", "fast"))
+    full = derivation.symbolic
     for name in ("mass_matrix", "bias"):
         none, some, most = (operations(getattr(form, name)) for form in (raw, fast, full))
         assert most <= min(some, none), name
@@ -259,7 +264,7 @@ def test_fully_simplified_forms_are_no_longer(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", WHOLE)
 def test_simplified_forms_have_no_whole_floats(seed: int) -> None:
-    form = readable(seed, turns(seed)).closed_form("full")
+    form = readable(seed, turns(seed)).symbolic
     for entry in (*form.mass_matrix, *form.bias, *form.energy):
         assert not whole_floats(entry), entry
 
@@ -284,7 +289,7 @@ QUASI = [s for s in WHOLE if s not in COORDINATES]
 def mass_slopes(state: State) -> Array:
     """∂M/∂q, differentiated by sympy: one matrix for each position."""
     d = state.derivation
-    M = d.closed_form("fast").mass_matrix
+    M = d.mass_matrix
     return np.array([state.form(M.diff(x)) for x in d.q])
 
 
