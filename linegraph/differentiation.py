@@ -207,6 +207,7 @@ class Replay:
     Args:
         algebra: where to calculate.
         symbol: what stands for a symbol there, given its argument and place.
+        number: what stands for a number there; itself if left out.
 
     Example:
         >>> from linegraph.algebra import Floats
@@ -216,16 +217,22 @@ class Replay:
         9.0
     """
 
-    def __init__(self, algebra: Algebra, symbol: Callable[[Symbol], Scalar]) -> None:
+    def __init__(
+        self,
+        algebra: Algebra,
+        symbol: Callable[[Symbol], Scalar],
+        number: Callable[[Scalar], Scalar] | None = None,
+    ) -> None:
         """Nothing is calculated yet; what has been is kept."""
         self._algebra = algebra
         self._symbol = symbol
+        self._number = number or (lambda x: x)
         self._known: dict[int, Scalar] = {}
 
     def __call__(self, x: Scalar) -> Scalar:
         """The scalar over the other algebra."""
         if not isinstance(x, Node):
-            return x
+            return self._number(x)
         for node in _below(x, self._known):
             self._known[node.index] = self._value(node)
         return self._known[x.index]
@@ -237,8 +244,11 @@ class Replay:
     def _value(self, node: Node) -> Scalar:
         if node.op == SYMBOL:
             return self._symbol((node.a, node.b))
-        parts = [self._known[x.index] if isinstance(x, Node) else x for x in (node.a, node.b)]
-        given = parts if node.b is not None else parts[:1]
+        given = [
+            self._known[x.index] if isinstance(x, Node) else self._number(x)
+            for x in (node.a, node.b)
+            if x is not None
+        ]
         action = _OPERATIONS.get(node.op)
         return action(*given) if action else self._algebra.function(node.op, *given)
 

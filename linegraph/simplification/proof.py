@@ -59,7 +59,7 @@ class Precise:
     def function(self, name: str, *x: Scalar) -> Scalar:
         """Any function of `functions.ARITY`."""
         if name in ("min", "max"):
-            return (min if name == "min" else max)(*x)
+            return (min if name == "min" else max)(x, key=lambda z: z.real)
         return getattr(self.context, OWN.get(name, name))(*x)
 
 
@@ -79,7 +79,7 @@ class Point:
         self._seed = seed
         self._algebra = Precise()
         self._values: dict[Symbol, Any] = {}
-        self._replay = Replay(self._algebra, self.value)
+        self._replay = Replay(self._algebra, self.value, self._algebra.context.convert)
         self._generators: dict[int, Any] = {}
         self._known: dict[Expr, Any] = {}
 
