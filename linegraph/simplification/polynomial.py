@@ -91,8 +91,7 @@ class Ring:
         self._bias = 0
         self._high = 0
         self._watched = 0
-        self._squares: list[tuple[int, int]] = []
-        self._replaced: dict[int, Terms] = {}
+        self._squares: list[tuple[int, int, Terms]] = []
         self._exponents: dict[int, tuple[tuple[int, int], ...]] = {}
 
     # -- generators
@@ -107,13 +106,16 @@ class Ring:
             self._bias |= ZERO_DIGIT << shift
             self._high |= 1 << (shift + BITS - 1)
             if kind in (COS, ROOT):
-                self._watched |= (ZERO_DIGIT - 2) << shift
-                self._replaced[place] = (
-                    {0: 1, unit(self.generator(SIN, content), 2): -1}
-                    if kind == COS
-                    else dict(content)
-                )
+                sine = {0: 1, unit(self.generator(SIN, content), 2): -1} if kind == COS else {}
+                self.replace_square(place, sine or dict(content))
         return self._places[key]
+
+    def replace_square(self, place: int, square: Terms) -> None:
+        """From now on write other terms for the square of a generator."""
+        shift = BITS * place
+        mask = (ZERO_DIGIT - 2) << shift
+        self._watched |= mask
+        self._squares.append((mask, shift, square))
 
     def power(self, kind: str, content: Any, exponent: int = 1) -> Poly:
         """A generator to a power."""
@@ -269,16 +271,27 @@ class Ring:
         return found
 
     def reduced(self, term: int) -> Terms:
-        """A term with no square of a cosine or of a root left."""
-        biased = term + self._bias
-        if biased < 0 or biased & self._high:
-            raise Swollen
-        if not biased & self._watched:
-            return {term: 1}
-        for place, square in self._replaced.items():
-            if self.exponent(term, place) >= 2:
-                return self.product({term - unit(place, 2): 1}, square)
-        return {term: 1}  # a cosine or a root in a denominator
+        """A term with no square left that is something else: of a cosine, of a root.
+
+        Raises:
+            Swollen: an exponent is too large.
+        """
+        found: Terms = {}
+        pending: list[tuple[int, Number]] = [(term, 1)]
+        while pending:
+            term, k = pending.pop()
+            biased = term + self._bias
+            if biased < 0 or biased & self._high:
+                raise Swollen
+            for mask, shift, square in self._squares:
+                # an exponent below zero has these bits, too
+                if biased & mask and (biased >> shift & (2**BITS - 1)) >= ZERO_DIGIT + 2:
+                    rest = term - (2 << shift)
+                    pending += [(rest + t, k * x) for t, x in square.items()]
+                    break
+            else:
+                gather(found, term, k)
+        return found
 
     def quotient(self, p: Poly, q: Poly) -> Poly:
         """``p / q``; a sum in the denominator becomes a generator."""
