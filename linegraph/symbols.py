@@ -73,7 +73,8 @@ class Symbolic:
         self.dag = Dag()
         self._parameters = self._valued(self.dag)
         self.tree: KinematicTree = derivation.tree(self.dag, self._parameters)
-        self.simplifier = Simplifier(self._named, level, budget, progress)
+        units = [[("q", place) for place in unit] for unit in self.tree.quaternions]
+        self.simplifier = Simplifier(self._named, level, budget, progress, units)
         self.q, self.v, self.a, self.u, self.multipliers = map(
             self._column, ("q", "v", "a", "u", MULTIPLIERS)
         )

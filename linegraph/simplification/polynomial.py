@@ -17,6 +17,8 @@ from linegraph.expression import Number
 from linegraph.functions import of_numbers
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from linegraph.differentiation import Symbol
 
 Terms: TypeAlias = dict[int, Number]
@@ -106,9 +108,17 @@ class Ring:
             self._bias |= ZERO_DIGIT << shift
             self._high |= 1 << (shift + BITS - 1)
             if kind in (COS, ROOT):
-                sine = {0: 1, unit(self.generator(SIN, content), 2): -1} if kind == COS else {}
-                self.replace_square(place, sine or dict(content))
+                square: Terms = dict(content) if kind == ROOT else {0: 1}
+                if kind == COS:
+                    square[unit(self.generator(SIN, content), 2)] = -1
+                self.replace_square(place, square)
         return self._places[key]
+
+    def normalise(self, quaternion: Sequence[Symbol]) -> None:
+        """Write 1 - x^2 - y^2 - z^2 for w^2 of a unit quaternion (x, y, z, w)."""
+        *others, last = (self.generator(SYMBOL, symbol) for symbol in quaternion)
+        square: Terms = {unit(place, 2): -1 for place in others}
+        self.replace_square(last, {0: 1} | square)
 
     def replace_square(self, place: int, square: Terms) -> None:
         """From now on write other terms for the square of a generator."""
@@ -401,6 +411,12 @@ def plain(x: Number) -> Number:
     if isinstance(x, float):
         return int(x) if x.is_integer() and abs(x) < 1e15 else x
     return int(x) if x == int(x) else x
+
+
+def near(k: Number) -> Number:
+    """A float that rounding has moved off a whole number, as that."""
+    whole = round(k)
+    return whole if isinstance(k, float) and whole and abs(k - whole) < 1e-12 * abs(k) else plain(k)
 
 
 def reciprocal(k: Number) -> Number:
