@@ -20,6 +20,7 @@ from linegraph.notation.writing import SUBSCRIPTS
 
 if TYPE_CHECKING:
     from linegraph.derive import Derivation
+    from linegraph.model import Model
 
 _LETTER_NAMES = (
     *("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa"),
@@ -136,6 +137,7 @@ def names_of(derivation: Derivation) -> dict[str, Name]:
             rate = replace(_coordinate(quantity.name, owners), role=RATE, place=place)
             found[quantity.name] = rate
         found[f"a_{quantity.name}"] = rate.rate()
+    _dependent(model, owners, found)
     rates = {q.name if q.name not in positions else f"{q.name}_dot" for q in tree.velocities}
     for place, quantity in enumerate(tree.inputs):
         name = quantity.name
@@ -150,6 +152,23 @@ def names_of(derivation: Derivation) -> dict[str, Name]:
     return _multipliers(derivation, found)
 
 
+def _dependent(
+    model: Model, owners: dict[str, tuple[str, str]], found: dict[str, Name]
+) -> None:
+    """Coordinates of joints that are chords or follow others: no state, but they are spoken of."""
+    for joint in model.joints:
+        own = {quantity.name for quantity in joint.positions()}
+        for quantity in joint.positions():
+            name = replace(_coordinate(quantity.name, owners), role=COORDINATE, place=len(found))
+            found.setdefault(quantity.name, name)
+        for quantity in joint.velocities():
+            if quantity.name in own:
+                found.setdefault(f"{quantity.name}_dot", found[quantity.name].rate())
+            else:
+                rate = replace(_coordinate(quantity.name, owners), role=RATE, place=len(found))
+                found.setdefault(quantity.name, rate)
+
+
 def _coordinate(name: str, owners: dict[str, tuple[str, str]]) -> Name:
     """A letter where the name has one; of a word an entry of q: a dot over a long word is not read."""
     joint, suffix = owners.get(name, ("", ""))
@@ -160,7 +179,7 @@ def _coordinate(name: str, owners: dict[str, tuple[str, str]]) -> Name:
     if twist:
         return Name("ω" if twist[2] == "w" else "v", (lower(twist[1]), twist[3]))
     own = shaped(name)
-    return own if len(own.letter) <= LONGEST_DOTTED else Name("q", (name,))
+    return own if len(own.letter) == 1 or len(name) <= LONGEST_DOTTED else Name("q", (name,))
 
 
 def _multipliers(derivation: Derivation, found: dict[str, Name]) -> dict[str, Name]:

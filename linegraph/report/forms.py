@@ -120,17 +120,7 @@ class Forms:
 
     def tree(self, expression: Any) -> Math:
         """An expression as a formula."""
-        return self._subject.look.tree(self._valued(expression))
-
-    def _valued(self, expression: Any) -> Any:
-        if not self._subject.folded:
-            return expression
-        values = {
-            name: p.value
-            for name, p in self._subject.model.parameters.items()
-            if p.value is not None
-        }
-        return expression.subs(values)
+        return self._subject.look.tree(self._subject.valued(expression))
 
     # -- sections
 
