@@ -25,7 +25,9 @@ from linegraph.notation.plain import Plain
 from linegraph.notation.tree import Grid, Name, Sum
 from linegraph.report import FORMATS, format_of, html, latex, markdown, report, text
 from linegraph.report.contents import document
-from linegraph.report.document import Document, Formulas, Listing, Row, Section, formulas
+from linegraph.report.document import Document, Formulas, Listing, Matrix, Row, Section, formulas
+from linegraph.report.graphs import MOST_WRITTEN
+from linegraph.report.intermediates import ENTRIES, symbols_of
 from linegraph.report.subject import Subject
 
 if TYPE_CHECKING:
@@ -167,7 +169,18 @@ def values_of(
     found |= more
     numeric = d.numeric()
     found |= {name: float(x) for name, x in numeric.parameters.items()}
-    return {Plain()(subject.look.name(name)): x for name, x in found.items()} | {"t": 0.0}
+    shown = {Plain()(subject.look.name(name)): x for name, x in found.items()} | {"t": 0.0}
+    # long listings go by places
+    for argument, letter in ENTRIES.items():
+        look = symbols_of(subject, entries=True)
+        for k, name in enumerate(subject_names(subject, argument)):
+            if name in found and letter:
+                shown.setdefault(Plain()(look(argument, k)), found[name])
+    return shown
+
+
+def subject_names(subject: Subject, argument: str) -> list[str]:
+    return list(getattr(subject, f"{argument}_names"))
 
 
 def state_of(d: lg.Derivation, seed: int = 1) -> tuple[list[float], list[float]]:
@@ -330,8 +343,18 @@ def test_printed_cutsets_and_circuits_are_those_of_the_topology(name: str) -> No
     for part, topology in zip(inner, topologies, strict=True):
         printed = [b for b in part.blocks if isinstance(b, Formulas)]
         matrices = [m for m in (topology.cutset, topology.circuit) if m.rows]
+        shown = [b for b in part.blocks if isinstance(b, Matrix)]
         if not printed:
             continue  # a large rotation refers to translation
+        if len(topology.projection.edges) > MOST_WRITTEN and matrices:
+            # the matrix, and one equation of each kind read off it
+            assert [b.matrix for b in shown] == [topology.cutset]
+            assert [len(b.rows) for b in printed] == [1, 1]
+            rows = [(printed[0].rows[0], topology.cutset), (printed[1].rows[0], topology.circuit)]
+            for row, matrix in rows:
+                signs = [-1 if n else 1 for n, _ in getattr(row.left, "terms", ((False, row.left),))]
+                assert signs in [[1, *(own[j] for j in sorted(own))] for own in matrix.entries]
+            continue
         assert [len(b.rows) for b in printed] == [len(m.rows) for m in matrices]
         for block, matrix in zip(printed, matrices, strict=True):
             for row, own in zip(block.rows, matrix.entries, strict=True):
@@ -471,7 +494,7 @@ def test_the_command_says_what_is_wrong(tmp_path: Path) -> None:
     folder.mkdir()
     done = CliRunner().invoke(main, ["derive", source, "--output", str(folder)])
     assert done.exit_code == 2
-    assert "is a folder" in done.output
+    assert "is a directory" in done.output
     assert list(tmp_path.iterdir()) == [folder]
 
 

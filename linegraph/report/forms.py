@@ -158,23 +158,24 @@ class Forms:
 
     def _forces(self) -> list[Block]:
         """Q of a long system: mostly an effort for each row."""
-        entries = [self._nodes(x) for x in self._functions.efforts]
+        entries = [self._nodes(x, entries=True) for x in self._functions.efforts]
         if len(str(entries)) > 40000:
             return [said("Q is listed with the functions that `emit` writes.")]
         rows = [Row(Name("Q", (str(k),)), x) for k, x in enumerate(entries, 1)]
         return [said("The forces are"), Formulas(tuple(rows))]
 
-    def _nodes(self, x: Any) -> Math:
+    def _nodes(self, x: Any, *, entries: bool = False) -> Math:
         from linegraph.report.intermediates import symbols_of
         from linegraph.report.nodes import Nodes
 
-        return Nodes(symbols_of(self._subject))(x)
+        return Nodes(symbols_of(self._subject, entries=entries))(x)
 
     def _listed(self, which: str) -> list[Block]:
         listing, results, operations = listed_program(self._subject, which)
         text = (
             f"They are too long to be read in one piece ({operations} operations), so parts that are used "
-            "again have names z, and s and c are sines and cosines. Group by group, in the order of the tree:"
+            "again have names z, and s and c are sines and cosines; coordinates, velocities and inputs go by their "
+            "places in the table above. Group by group, in the order of the tree:"
         )
         return [said(text), listing, said("With these"), Formulas(tuple(results))]
 

@@ -40,7 +40,7 @@ MOST_COLUMNS = 18
 NARROW = 16
 """A column of so many characters is never broken."""
 
-MANY, HALF, THIRD = 14, 42, 27
+MANY, HALF, THIRD = 12, 42, 28
 """So many equations of so few characters stand in two columns; steps without a longer part in three."""
 
 PLACE = (472, 560)
@@ -180,7 +180,7 @@ def _broken(row: Row, width: int) -> list[str]:
 
 
 def _display(rows: Sequence[Row]) -> list[str]:
-    size = max(len(Plain()(row.left)) + len(Plain()(row.right)) for row in rows)
+    size = max(typeset(Plain()(row.left)) + typeset(Plain()(row.right)) for row in rows)
     if len(rows) >= MANY and size <= HALF:
         lines = [r"\begin{multicols}{2}\raggedright\raggedcolumns"]
         return [*lines, *map(_step, rows), r"\end{multicols}"]
