@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from linegraph.derive import Derivation
 
 
-CHECKSUM = re.compile(r"\b[0-9a-f]{64}\b")
+SOURCE = re.compile(r"Derived from [^.]*\b[0-9a-f]{64}\.?")
 
 
 def document(
@@ -59,5 +59,8 @@ def document(
 
 
 def _told(about: str) -> tuple[str, str]:
-    """What a model says of itself; from which file it was made stands at the end."""
-    return ("", about) if CHECKSUM.search(about) else (about, "")
+    """What a model says of itself, and from which file it was made, which stands at the end."""
+    found = SOURCE.search(about)
+    if found is None:
+        return about, ""
+    return (about[: found.start()] + about[found.end() :]).strip(), found[0].strip()

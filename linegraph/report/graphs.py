@@ -109,8 +109,8 @@ def _graph(subject: Subject, topology: Topology) -> list[Block]:
         f"{count(len(projection.edges), 'edge')}: {count(len(topology.branches), 'branch', 'branches')} and "
         f"{count(len(topology.chords), 'chord')}."
     )
-    about = f"The system graph in {called(projection.domain)}; edges of the tree are bold."
     names = next(n for n, t in chosen_panels(subject.derivation) if t is topology)
+    about = f"The system graph in {listed([called(n) for n in names])}; edges of the tree are bold."
     picture = Picture(graph_scene(subject.derivation, names), about, topology)
     return [said(f"It has {size}"), picture, *_incidence(projection)]
 

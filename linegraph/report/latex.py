@@ -43,8 +43,8 @@ NARROW = 16
 MANY, HALF, THIRD = 12, 42, 28
 """So many equations of so few characters stand in two columns; steps without a longer part in three."""
 
-PLACE = (472, 560)
-"""Width and height of a picture at most, in points."""
+WIDE, HIGH, LOW = 472, 560, 270
+"""The place of a picture in points: its width, its height for a graph, its height for a sketch."""
 
 LEVELS = ("section", "subsection", "subsubsection", "paragraph")
 
@@ -122,7 +122,7 @@ def _block(block: Block) -> list[str]:
         case Listing(groups):
             return _listing(groups)
         case Picture(scene, about):
-            drawn = picture(scene, *PLACE)
+            drawn = picture(scene, WIDE, HIGH if block.topology else LOW)
             return [r"\begin{center}", drawn, rf"\\[1ex]{{\small {escaped(about)}}}", r"\end{center}"]
     raise TypeError(block)
 
@@ -180,8 +180,9 @@ def _broken(row: Row, width: int) -> list[str]:
 
 
 def _display(rows: Sequence[Row]) -> list[str]:
-    size = max(typeset(Plain()(row.left)) + typeset(Plain()(row.right)) for row in rows)
-    if len(rows) >= MANY and size <= HALF:
+    size = max(typeset(Plain()(row.left)) + _solid(row) for row in rows)
+    length = max(typeset(Plain()(row.right)) for row in rows)
+    if len(rows) >= MANY and size <= HALF and length <= WIDTH:
         lines = [r"\begin{multicols}{2}\raggedright\raggedcolumns"]
         return [*lines, *map(_step, rows), r"\end{multicols}"]
     return [r"\begin{align*}", *aligned(rows, WIDTH), r"\end{align*}"]
