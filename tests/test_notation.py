@@ -118,7 +118,17 @@ def test_no_two_names_look_alike() -> None:
         assert len(looks) == len({*looks})
     # names chosen so that rules meet: each pair would print as one
     model = lg.Model("alike")
-    for name in ("q_shoulder", "theta", "u_shoulder", "m1", "m_1", "k_theta1", "k_θ₁", "é1x", "e1x"):
+    for name in (
+        "q_shoulder",
+        "theta",
+        "u_shoulder",
+        "m1",
+        "m_1",
+        "k_theta1",
+        "k_θ₁",
+        "é1x",
+        "e1x",
+    ):
         model.parameter(name, 1.0)
     body = model.body("b", mass=1.0, inertia=(1, 1, 1))
     model.revolute("shoulder", between=("ground", body), axis=(0, 0, 1))

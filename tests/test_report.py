@@ -352,7 +352,9 @@ def test_printed_cutsets_and_circuits_are_those_of_the_topology(name: str) -> No
             assert [len(b.rows) for b in printed] == [1, 1]
             rows = [(printed[0].rows[0], topology.cutset), (printed[1].rows[0], topology.circuit)]
             for row, matrix in rows:
-                signs = [-1 if n else 1 for n, _ in getattr(row.left, "terms", ((False, row.left),))]
+                signs = [
+                    -1 if n else 1 for n, _ in getattr(row.left, "terms", ((False, row.left),))
+                ]
                 assert signs in [[1, *(own[j] for j in sorted(own))] for own in matrix.entries]
             continue
         assert [len(b.rows) for b in printed] == [len(m.rows) for m in matrices]

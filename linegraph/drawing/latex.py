@@ -39,7 +39,8 @@ def picture(scene: Scene, width: float, height: float, largest: float = 0.75) ->
 
     Args:
         scene: what to show.
-        width, height: of the place for it, in points.
+        width: of the place for it, in points.
+        height: of that place.
         largest: points for each unit of the scene at most.
 
     Example:

@@ -35,9 +35,7 @@ class Notation:
 
     def __init__(self, derivation: Derivation | None = None) -> None:
         """Look up what its symbols stand for."""
-        self.names: dict[str, Name] = (
-            {} if derivation is None else told_apart(names_of(derivation))
-        )
+        self.names: dict[str, Name] = {} if derivation is None else told_apart(names_of(derivation))
         self.tree = Expressions(self.name)
 
     def name(self, text: str) -> Name:

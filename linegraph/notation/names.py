@@ -152,9 +152,7 @@ def names_of(derivation: Derivation) -> dict[str, Name]:
     return _multipliers(derivation, found)
 
 
-def _dependent(
-    model: Model, owners: dict[str, tuple[str, str]], found: dict[str, Name]
-) -> None:
+def _dependent(model: Model, owners: dict[str, tuple[str, str]], found: dict[str, Name]) -> None:
     """Coordinates of joints that are chords or follow others: no state, but they are spoken of."""
     for joint in model.joints:
         own = {quantity.name for quantity in joint.positions()}

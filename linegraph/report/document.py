@@ -179,4 +179,3 @@ def formulas(blocks: tuple[Block, ...]) -> Iterator[Math]:
 
 def _of(text: Text) -> Iterator[Math]:
     return (part for part in text if isinstance(part, FORMULA))
-

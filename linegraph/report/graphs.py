@@ -62,8 +62,8 @@ def terminal_graphs(subject: Subject) -> Section:
     for component, edges in order.items():
         for k, (edge, domains) in enumerate(edges.values()):
             first: Text = (Code(component),) if k == 0 else ()
-            own: Text = (Code(edge.name),)
-            row: tuple[Text, ...] = (first, own, (Code(edge.tail), " → ", Code(edge.head)))
+            name: Text = (Code(edge.name),)
+            row: tuple[Text, ...] = (first, name, (Code(edge.tail), " → ", Code(edge.head)))
             rows.append(row if alike else (*row, (listed([called(d) for d in domains]),)))
     text = (
         "Each component shows its terminals only; between two of them an edge is measured, and the edges of "

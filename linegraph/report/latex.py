@@ -123,7 +123,12 @@ def _block(block: Block) -> list[str]:
             return _listing(groups)
         case Picture(scene, about):
             drawn = picture(scene, WIDE, HIGH if block.topology else LOW)
-            return [r"\begin{center}", drawn, rf"\\[1ex]{{\small {escaped(about)}}}", r"\end{center}"]
+            return [
+                r"\begin{center}",
+                drawn,
+                rf"\\[1ex]{{\small {escaped(about)}}}",
+                r"\end{center}",
+            ]
     raise TypeError(block)
 
 

@@ -71,13 +71,13 @@ def centers(subject: Subject) -> list[Block]:
         return []
     text = (
         "Put together along the tree, in the axes of ground: the place of a mass centre and its velocity, "
-        "which is that across the inertia edge:"
+        "which is that across the inertia edge; components that are not shown are zero:"
     )
     return [said(text), Formulas(tuple(short for row in found for short in _by_components(row)))]
 
 
 def _rows(subject: Subject) -> list[Row]:
-    """r and v of every mass centre; none where they have too many terms."""
+    """The place and the velocity of every mass centre; none where they have too many terms."""
     from linegraph.shared import Functions
 
     scheme = Functions(subject.derivation, subject.folded).scheme
@@ -121,4 +121,5 @@ def _by_components(row: Row) -> list[Row]:
     return [
         Row(Name(left.letter, (*left.subs, axis)), entry)
         for axis, entry in zip("xyz", row.right.entries, strict=True)
+        if entry != ZERO
     ]

@@ -5,7 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from linegraph.joints.base import BY_INPUT
-from linegraph.notation.tree import TRANSPOSED, ZERO, Name, Power, Product, Relation, Sum, product, total
+from linegraph.notation.tree import (
+    TRANSPOSED,
+    ZERO,
+    Name,
+    Power,
+    Product,
+    Relation,
+    Sum,
+    product,
+    total,
+)
 from linegraph.report.document import Block, Code, Inline, Section, Table, Text, said
 
 if TYPE_CHECKING:
@@ -150,9 +160,9 @@ def _inertias(subject: Subject) -> list[Block]:
         if all(body.first is None for body in subject.model.bodies.values())
         else "Inertias about the mass centre, or about the origin where a first moment is given"
     )
-    about += ", in kg m²; bodies without inertia are left out" * (
-        len(bodies) < len(subject.model.bodies)
-    ) or ", in kg m²"
+    about += ", in kg m²"
+    if len(bodies) < len(subject.model.bodies):
+        about += "; bodies without inertia are left out"
     head = ("body", *(f"J {AXES[k]}" for k in used))
     rows = [((Code(b.name),), *((subject.value(b.inertia[k]),) for k in used)) for b in bodies]
     return [said(f"{about}:"), Table(head, tuple(rows))]
@@ -254,7 +264,13 @@ def _parameters(subject: Subject) -> tuple[Block, ...] | None:
         value: Text = ("–",) if parameter.value is None else (subject.value(parameter.value),)
         name = subject.look.name(parameter.name)
         rows.append(
-            ((Code(parameter.name),), (name,), value, (unit_of(parameter.unit),), (parameter.about,))
+            (
+                (Code(parameter.name),),
+                (name,),
+                value,
+                (unit_of(parameter.unit),),
+                (parameter.about,),
+            )
         )
     head = ("parameter", "symbol", "value", "unit", "meaning")
     return (Table(head, tuple(rows)),) if rows else None
