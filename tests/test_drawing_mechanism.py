@@ -17,7 +17,11 @@ from linegraph.drawing.views import chosen_view
 if TYPE_CHECKING:
     from linegraph.drawing.scene import Scene
 
-WITH_BODIES = [name for name in FILES if example(name).model.bodies]
+WITH_BODIES = [
+    name
+    for name, path in FILES.items()
+    if path.suffix == ".urdf" or "[body." in path.read_text(encoding="utf-8")
+]
 
 
 def disc_of(scene: Scene, kind: str, name: str) -> tuple[float, float]:

@@ -227,6 +227,37 @@ def walked(section: Section, values: dict[str, float]) -> dict[str, float]:
     return known
 
 
+@pytest.mark.parametrize(
+    "name", ["double_pendulum", "furuta", "four_bar", "cart_pole_motor", "crane", "heavy_top"]
+)
+def test_printed_motion_of_mass_centres_is_that_of_the_derivation(name: str) -> None:
+    d = derivation(name)
+    q, v = state_of(d)
+    values = values_of(d, q, v, {})
+    printed = equations_in(section_of(name, "Connecting equations"))
+    scheme = scheme_of(d, q, v, [0.0] * len(v))
+    seen = 0
+    for body in d.model.bodies:
+        frame = scheme.center(body)
+        for start, part in (
+            (f"r_{body}.mass_center", frame.origin),
+            (f"v_{body}/inertia", frame.linear),
+        ):
+            whole = printed.get(start)
+            if whole not in (None, "0"):
+                shown = dict(zip("xyz", entries(whole)[0], strict=True))
+            else:
+                shown = {
+                    axis: printed[key] for axis in "xyz" if (key := f"{start}_{axis}") in printed
+                }
+            if not shown and whole is None:
+                continue  # too long
+            seen += 1
+            for axis, x in zip("xyz", part, strict=True):
+                assert abs(Reader(values)(shown.get(axis, "0")) - float(x)) < 1e-12
+    assert seen >= (1 if name == "heavy_top" else 2)
+
+
 def section_of(name: str, title: str) -> Section:
     return next(s for s in reported(name).sections if s.title == title)
 
@@ -389,6 +420,15 @@ def test_torques_about_ground_satisfy_the_printed_cutsets() -> None:
             sums[edge.tail][k] += value
             sums[edge.head][k] -= value
     assert max(abs(x) for row in sums.values() for x in row) < 1e-12
+
+
+def test_what_a_model_was_made_from_stands_at_the_end() -> None:
+    for name in ("panda", "furuta"):
+        for format in FORMATS:
+            text = written(name, format).replace("\\allowbreak{}", "").replace("\n", " ")
+            place = text.index("Derived from a ")
+            assert place > len(text) - 250
+    assert reported("furuta").about.startswith("Furuta pendulum")
 
 
 # ---- the same bytes

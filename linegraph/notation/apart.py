@@ -27,8 +27,9 @@ def told_apart(found: dict[str, Name]) -> dict[str, Name]:
     while alike := _alike(known) - words:
         words |= alike
         known |= {key: replace(known[key], letter=key, subs=(), dots=0) for key in alike}
+    alike = _alike(known)
     for place, key in enumerate(known):
-        if key in _alike(known):
+        if key in alike:
             known[key] = replace(known[key], subs=(f"({place + 1})",))
     return known
 

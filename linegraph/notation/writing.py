@@ -58,6 +58,8 @@ def pieces(text: str) -> list[tuple[int, str]]:
 
 def visible(text: str) -> str:
     """Any text on one line without characters that cannot be seen or that turn the direction of others."""
+    if text.isprintable() and " " not in text:
+        return text
     shown = "".join(
         c if unicodedata.category(c)[0] != "C" or c in "\n\t" else _code(c) for c in text
     )

@@ -324,9 +324,9 @@ class Forms:
         once += [" and ", letter("λ"), " are known"] if subject.tree.closed else [" is known"]
         blocks: list[Block] = [said(
             *once, ", every other variable follows from the circuit and the cutset equations. A joint ",
-            "exerts a force ", Name("f", bold=True), " and a torque ", Name("τ", bold=True), " on its head, given ",
-            f"here about the origin of the head, in the axes of {where}. The joint's effort is part of ",
-            "them, elements in the joint are not; components that are not shown are zero.")]  # fmt: skip
+            "exerts a force ", Name("f", bold=True), " and a torque ", Name("τ", bold=True), " on its head, ",
+            f"given here about the origin of the head, in the axes of {where}. The joint's effort is part ",
+            "of them, elements in the joint are not; components that are not shown are zero.")]  # fmt: skip
         if self.short_reactions:
             for joint in subject.model.joints:
                 force, torque = self.closed.reaction(joint.name)
