@@ -245,7 +245,7 @@ def test_printed_motion_of_mass_centres_is_that_of_the_derivation(name: str) -> 
         ):
             whole = printed.get(start)
             if whole not in (None, "0"):
-                shown = dict(zip("xyz", entries(whole)[0], strict=True))
+                shown = dict(zip("xyz", (e for (e,) in entries(whole)), strict=True))
             else:
                 shown = {
                     axis: printed[key] for axis in "xyz" if (key := f"{start}_{axis}") in printed
