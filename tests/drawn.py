@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import hashlib
 from functools import cache
 from itertools import combinations, pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linegraph import Derivation, derive, modelfile, urdf
+from linegraph.drawing.dot import dot_text
+from linegraph.drawing.pictures import graph_scene, whole_scene
 from linegraph.drawing.scene import Box, Disc, Stroke, flat
+from linegraph.drawing.svg import svg_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -29,6 +33,21 @@ def example(name: str) -> Derivation:
         base = "floating" if name == "anymal" else "fixed"
         return derive(urdf.read(str(path), base=base))
     return derive(modelfile.read(str(path)))
+
+
+@cache
+def picture(name: str) -> Scene:
+    """The picture of an example's graph."""
+    return graph_scene(example(name))
+
+
+def digests() -> str:
+    """Of pictures of several examples, to be compared with those of another process."""
+    found = []
+    for name in ("andrews_squeezer", "stewart_platform", "arm_with_drives", "panda"):
+        text = svg_text(whole_scene(example(name))) + dot_text(example(name))
+        found.append(hashlib.sha256(text.encode()).hexdigest())
+    return " ".join(found)
 
 
 def overlaps(scene: Scene) -> list[tuple[str, str]]:

@@ -125,3 +125,27 @@ def compile_and_run(main: Path, folder: Path) -> str:
     command = ["cc", "-std=c99", "-O1", "-Wall", "-Wextra", "-Werror", f"-I{folder}", str(main)]
     subprocess.run([*command, str(folder / "panda.c"), "-lm", "-o", str(program)], check=True)
     return subprocess.run([str(program)], check=True, capture_output=True, text=True).stdout
+
+
+def drawn(*arguments: str) -> str:
+    command = [sys.executable, "-m", "linegraph", *arguments]
+    environment = {"PYTHONPATH": str(ROOT), "PATH": "/usr/bin", "PYTHONIOENCODING": "utf-8"}
+    return subprocess.run(
+        command, cwd=ROOT, env=environment, check=True, capture_output=True, encoding="utf-8"
+    ).stdout
+
+
+def test_the_picture_of_the_linkage_is_current() -> None:
+    """Else call `linegraph graph` as the README does, with ``-o docs/four_bar.svg``."""
+    assert "docs/four_bar.svg" in README
+    (source,) = re.findall(r"^ +\.venv/bin/linegraph graph (\S+) --what both", README, re.MULTILINE)
+    kept = (ROOT / "docs" / "four_bar.svg").read_text(encoding="utf-8")
+    assert drawn("graph", source, "--what", "both") == kept
+
+
+def test_the_derivation_says_what_the_page_on_derivations_shows() -> None:
+    page = (ROOT / "docs" / "derivations.md").read_text(encoding="utf-8")
+    (shown,) = re.findall(r"^```text\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    report = drawn("derive", "examples/cart_pole/cart_pole.toml")
+    for part in shown.strip("\n").split("\n\n"):
+        assert part in report

@@ -52,7 +52,7 @@ def test_names() -> None:
         "root_qw",
     )
     assert [Plain()(look.name(x)) for x in names] == [
-        *("m₁", "θ", "θ′", "θ″", "ω_root_x", "x_root", "ω_root_x′", "u_theta", "q_root_w"),
+        *("m₁", "θ", "θ′", "θ″", "ω_root_x", "x_root", "ω_root_x′", "u_θ", "q_root_w"),
     ]
     assert [Latex()(look.name(x)) for x in names] == [
         "m_{1}",
@@ -62,9 +62,83 @@ def test_names() -> None:
         r"\omega_{\mathrm{root},x}",
         r"x_{\mathrm{root}}",
         r"\dot{\omega}_{\mathrm{root},x}",
-        r"u_{\mathrm{theta}}",
+        r"u_{\theta}",
         r"q_{\mathrm{root},w}",
     ]
+
+
+def chain() -> lg.Derivation:
+    """A loop with joints named after axes, letters, numbered letters and in long words."""
+    model = lg.Model("chain")
+    near = model.ground
+    joints = [("prismatic", "x"), ("revolute", "theta1"), ("revolute", "arm"), ("revolute", "panda_joint1"),
+              ("cylindrical", "delta"), ("spherical", "psi")]  # fmt: skip
+    for kind, name in joints:
+        body = model.body(f"b_{name}", mass=1.0, inertia=(1, 1, 1))
+        options = {} if kind == "spherical" else {"axis": (0, 0, 1)}
+        getattr(model, kind)(name, between=(near, body), **options)
+        near = body
+    model.fixed("delta2", between=(near, "ground"))
+    return lg.derive(model)
+
+
+@pytest.mark.parametrize(
+    ("name", "plain", "latex", "mathml"),
+    [
+        ("x", "x", "x", "<mi>x</mi>"),
+        ("a_x", "x″", r"\ddot{x}", '<mover accent="true"><mi>x</mi><mo>¨</mo></mover>'),
+        ("u_x", "u_x", "u_{x}", "<msub><mi>u</mi><mi>x</mi></msub>"),
+        ("theta1_dot", "θ₁′", r"\dot{\theta}_{1}", "<msub><mover accent=\"true\"><mi>θ</mi><mo>˙</mo>"
+         "</mover><mn>1</mn></msub>"),
+        ("u_theta1", "u_θ₁", r"u_{\theta_{1}}",
+         "<msub><mi>u</mi><msub><mi>θ</mi><mn>1</mn></msub></msub>"),
+        ("arm_dot", "arm′", r"\dot{\mathit{arm}}",
+         '<mover accent="true"><mi class="w">arm</mi><mo>˙</mo></mover>'),
+        ("panda_joint1", "q_panda_joint1", r"q_{\text{panda\_joint1}}",
+         "<msub><mi>q</mi><mi>panda_joint1</mi></msub>"),
+        ("a_panda_joint1", "q_panda_joint1″", r"\ddot{q}_{\text{panda\_joint1}}",
+         '<msub><mover accent="true"><mi>q</mi><mo>¨</mo></mover><mi>panda_joint1</mi></msub>'),
+        ("delta_angle", "φ_δ", r"\phi_{\delta}", "<msub><mi>φ</mi><mi>δ</mi></msub>"),
+        ("u_delta_angle", "u_δ_angle", r"u_{\delta,\mathrm{angle}}",
+         "<msub><mi>u</mi><mrow><mi>δ</mi><mo>,</mo><mi>angle</mi></mrow></msub>"),
+        ("psi_wx", "u_ψ_wx", r"u_{\psi,\mathrm{wx}}",
+         "<msub><mi>u</mi><mrow><mi>ψ</mi><mo>,</mo><mi>wx</mi></mrow></msub>"),
+        ("psi_f1", "λ_ψ_f₁", r"\lambda_{\psi,f_{1}}",
+         "<msub><mi>λ</mi><mrow><mi>ψ</mi><mo>,</mo><msub><mi>f</mi><mn>1</mn></msub></mrow></msub>"),
+    ],
+)  # fmt: skip
+def test_names_in_all_writers(name: str, plain: str, latex: str, mathml: str) -> None:
+    look = CHAIN.name(name)
+    assert (Plain()(look), Latex()(look), MathMl()(look)) == (plain, latex, mathml)
+
+
+def test_no_two_names_look_alike() -> None:
+    for writer in (Plain(), Latex(), MathMl()):
+        looks = [writer(name) for name in CHAIN.names.values()]
+        assert len(looks) == len({*looks})
+    # names chosen so that rules meet: each pair would print as one
+    model = lg.Model("alike")
+    for name in (
+        "q_shoulder",
+        "theta",
+        "u_shoulder",
+        "m1",
+        "m_1",
+        "k_theta1",
+        "k_θ₁",
+        "é1x",
+        "e1x",
+    ):
+        model.parameter(name, 1.0)
+    body = model.body("b", mass=1.0, inertia=(1, 1, 1))
+    model.revolute("shoulder", between=("ground", body), axis=(0, 0, 1))
+    names = Notation(lg.derive(model)).names
+    for writer in (Plain(), Latex(), MathMl()):
+        looks = [writer(name).replace("textit", "mathit") for name in names.values()]
+        assert len(looks) == len({*looks})
+
+
+CHAIN = Notation(chain())
 
 
 def test_an_acceleration_is_one_only_where_there_is_a_coordinate() -> None:

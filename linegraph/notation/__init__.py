@@ -1,6 +1,6 @@
 """How formulas look: in LaTeX, in MathML and as plain text, the same names and the same order in all three.
 
-names         Greek letters, subscripts, dots, words
+names, apart  Greek letters, subscripts, dots, words; no two alike
 tree          what is meant, and the order of factors and summands
 expressions   from sympy to trees
 writing, latex, mathml, plain
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from linegraph.notation.apart import told_apart
 from linegraph.notation.expressions import Expressions
 from linegraph.notation.latex import Latex
 from linegraph.notation.mathml import MathMl
@@ -34,7 +35,7 @@ class Notation:
 
     def __init__(self, derivation: Derivation | None = None) -> None:
         """Look up what its symbols stand for."""
-        self.names: dict[str, Name] = {} if derivation is None else names_of(derivation)
+        self.names: dict[str, Name] = {} if derivation is None else told_apart(names_of(derivation))
         self.tree = Expressions(self.name)
 
     def name(self, text: str) -> Name:

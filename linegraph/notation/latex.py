@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from linegraph.notation.names import LATEX_GREEK
 from linegraph.notation.tree import TRANSPOSED, Call, Math, Name, Number, Product, Quotient, Raw
-from linegraph.notation.writing import ATOM, SIDES, SUM, Writer, digits, visible
+from linegraph.notation.writing import ATOM, SIDES, SUM, Writer, digits, numbered, visible
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -112,6 +112,9 @@ class Latex(Writer):
         return rf"\textit{{{escaped(text)}}}"
 
     def _sub(self, text: str) -> str:
+        letter, number = numbered(text)
+        if number:
+            return f"{self._sub(letter)}_{{{number}}}"
         if text in LATEX_GREEK:
             return _greek(text)
         if text.isascii() and (text.isdigit() or (len(text) == 1 and text.isalpha())):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from linegraph.notation.latex import _wide
 from linegraph.notation.tree import TRANSPOSED, Call, Math, Name, Number, Raw
-from linegraph.notation.writing import ATOM, SUM, Writer, digits, solid, visible
+from linegraph.notation.writing import ATOM, SUM, Writer, digits, numbered, solid, visible
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -69,6 +69,9 @@ class MathMl(Writer):
         return f"<mi>{shown}</mi>" if len(text) == 1 else f'<mi class="w">{shown}</mi>'
 
     def _sub(self, text: str) -> str:
+        letter, number = numbered(text)
+        if number:
+            return f"<msub>{self._sub(letter)}{element('mn', number)}</msub>"
         return element("mn" if text.isdigit() else "mi", text)
 
     def number(self, text: str) -> str:

@@ -16,9 +16,11 @@ from linegraph.notation.tree import (
     RATE,
     Name,
 )
+from linegraph.notation.writing import SUBSCRIPTS
 
 if TYPE_CHECKING:
     from linegraph.derive import Derivation
+    from linegraph.model import Model
 
 _LETTER_NAMES = (
     *("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa"),
@@ -35,6 +37,9 @@ _NUMBERED = re.compile(r"([A-Za-z]|[a-zA-Z]+?)([0-9]+)")
 _WORD = re.compile(r"[A-Za-z0-9]+")
 _TWIST = re.compile(r"(.+)_([vw])([xyz])")
 _RATE_OF = re.compile(r"der\((.+)\)")
+
+LONGEST_DOTTED = 3
+"""A word of so many letters still carries a dot."""
 
 SUFFIXES = {
     "angle": ("φ", ()),
@@ -69,13 +74,26 @@ def shaped(text: str) -> Name:
     head, *rest = text.split("_")
     if not all(_WORD.fullmatch(part) for part in (head, *rest)):
         return Name(text)
-    subs = tuple(GREEK.get(part, part) for part in rest)
+    subs = tuple(map(lower, rest))
     if head in GREEK:
         return Name(GREEK[head], subs)
     numbered = _NUMBERED.fullmatch(head)
     if numbered and (len(numbered[1]) == 1 or numbered[1] in GREEK):
         return Name(GREEK.get(numbered[1], numbered[1]), (numbered[2], *subs))
     return Name(head, subs)
+
+
+def lower(text: str) -> str:
+    """A word as a subscript: Greek letters as such, the number of a letter as a subscript of its own.
+
+    Example:
+        >>> lower("theta"), lower("theta2"), lower("f1"), lower("link1"), lower("hinge")
+        ('θ', 'θ₂', 'f₁', 'link1', 'hinge')
+    """
+    numbered = _NUMBERED.fullmatch(text)
+    if numbered and (len(numbered[1]) == 1 or numbered[1] in GREEK):
+        return GREEK.get(numbered[1], numbered[1]) + numbered[2].translate(SUBSCRIPTS)
+    return GREEK.get(text, text)
 
 
 def guessed(text: str) -> Name:
@@ -94,10 +112,7 @@ def guessed(text: str) -> Name:
 
 
 def names_of(derivation: Derivation) -> dict[str, Name]:
-    """The look of every symbol of a derivation; no two alike.
-
-    Where two would look alike, each is written as the word it is.
-    """
+    """The look of every symbol of a derivation; two may look alike yet."""
     found: dict[str, Name] = {}
     tree, model = derivation.structure, derivation.model
     for place, parameter in enumerate(model.parameters.values()):
@@ -122,27 +137,47 @@ def names_of(derivation: Derivation) -> dict[str, Name]:
             rate = replace(_coordinate(quantity.name, owners), role=RATE, place=place)
             found[quantity.name] = rate
         found[f"a_{quantity.name}"] = rate.rate()
+    _dependent(model, owners, found)
     rates = {q.name if q.name not in positions else f"{q.name}_dot" for q in tree.velocities}
     for place, quantity in enumerate(tree.inputs):
         name = quantity.name
         taken = name in positions or name in rates
         if taken or quantity.about.startswith("effort"):
-            own = Name("u", (name,), role=INPUT, place=place)
+            joint, suffix = owners.get(name, (name, name))
+            subs = (lower(joint), *([suffix] if name != joint else []))
+            own = Name("u", subs, role=INPUT, place=place)
             found[f"u_{name}" if taken else name] = own
         else:
             found[name] = replace(shaped(name), role=INPUT, place=place)
-    return _told_apart(_multipliers(derivation, found))
+    return _multipliers(derivation, found)
+
+
+def _dependent(model: Model, owners: dict[str, tuple[str, str]], found: dict[str, Name]) -> None:
+    """Coordinates of joints that are chords or follow others: no state, but they are spoken of."""
+    for joint in model.joints:
+        own = {quantity.name for quantity in joint.positions()}
+        for quantity in joint.positions():
+            name = replace(_coordinate(quantity.name, owners), role=COORDINATE, place=len(found))
+            found.setdefault(quantity.name, name)
+        for quantity in joint.velocities():
+            if quantity.name in own:
+                found.setdefault(f"{quantity.name}_dot", found[quantity.name].rate())
+            else:
+                rate = replace(_coordinate(quantity.name, owners), role=RATE, place=len(found))
+                found.setdefault(quantity.name, rate)
 
 
 def _coordinate(name: str, owners: dict[str, tuple[str, str]]) -> Name:
+    """A letter where the name has one; of a word an entry of q: a dot over a long word is not read."""
     joint, suffix = owners.get(name, ("", ""))
-    if suffix in SUFFIXES and joint:
+    if suffix in SUFFIXES and name != joint:
         letter, subs = SUFFIXES[suffix]
-        return Name(letter, (joint, *subs))
+        return Name(letter, (lower(joint), *subs))
     twist = _TWIST.fullmatch(name)
     if twist:
-        return Name("ω" if twist[2] == "w" else "v", (twist[1], twist[3]))
-    return shaped(name)
+        return Name("ω" if twist[2] == "w" else "v", (lower(twist[1]), twist[3]))
+    own = shaped(name)
+    return own if len(own.letter) == 1 or len(name) <= LONGEST_DOTTED else Name("q", (name,))
 
 
 def _multipliers(derivation: Derivation, found: dict[str, Name]) -> dict[str, Name]:
@@ -157,20 +192,12 @@ def _multipliers(derivation: Derivation, found: dict[str, Name]) -> dict[str, Na
         for letter in "ft":
             ways = (f"{letter}{k}" for k in range(1, 7))
             names += [(f"{component.name}_{way}", (component.name, way)) for way in ways]
-        names += [(f"{v.name}_drive", (v.name, "drive")) for v in component.velocities()]
+        for v in component.velocities():
+            own = v.name.removeprefix(f"{component.name}_")
+            parts = (component.name, own) if own != v.name else (v.name,)
+            names.append((f"{v.name}_drive", (*parts, "drive")))
     names += [(r.equation().name, (r.equation().name,)) for r in tree.relations]
-    for place, (name, subs) in enumerate(names):
+    for place, (name, words) in enumerate(names):
+        subs = tuple(map(lower, words))
         found.setdefault(name, Name("λ", subs, role=INPUT, place=1000 + place))
     return found
-
-
-def _told_apart(found: dict[str, Name]) -> dict[str, Name]:
-    """Names that look alike as the words they are."""
-    looks: dict[tuple[object, ...], list[str]] = {}
-    for key, name in found.items():
-        looks.setdefault((name.letter, "_".join(name.subs), name.dots), []).append(key)
-    alike = {key for keys in looks.values() if len(keys) > 1 for key in keys}
-    return {
-        key: replace(name, letter=key, subs=(), dots=0) if key in alike else name
-        for key, name in found.items()
-    }

@@ -38,6 +38,7 @@ DEEPEST = 7
 MARKS = re.compile("[\x01-\x08]")
 
 SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+DIGITS = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
 SUPERSCRIPTS = str.maketrans("0123456789-T", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻ᵀ")
 
 
@@ -57,6 +58,8 @@ def pieces(text: str) -> list[tuple[int, str]]:
 
 def visible(text: str) -> str:
     """Any text on one line without characters that cannot be seen or that turn the direction of others."""
+    if text.isprintable() and " " not in text:
+        return text
     shown = "".join(
         c if unicodedata.category(c)[0] != "C" or c in "\n\t" else _code(c) for c in text
     )
@@ -66,6 +69,17 @@ def visible(text: str) -> str:
 def digits(subs: Sequence[str]) -> bool:
     """Whether subscripts are single digits, which need nothing between them."""
     return bool(subs) and all(len(sub) == 1 and sub in "0123456789" for sub in subs)
+
+
+def numbered(sub: str) -> tuple[str, str]:
+    """A subscript without the digits that are a subscript of its own, and these.
+
+    Example:
+        >>> numbered("θ₁₂"), numbered("tip")
+        (('θ', '12'), ('tip', ''))
+    """
+    bare = sub.rstrip("₀₁₂₃₄₅₆₇₈₉")
+    return (bare, sub[len(bare) :].translate(DIGITS)) if bare else (sub, "")
 
 
 def _code(letter: str) -> str:

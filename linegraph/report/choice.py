@@ -77,7 +77,8 @@ def _because(subject: Subject, edge: Edge) -> Text:
         return ("inertia edge",) if inertia else ("its law gives the through variable",)
     if isinstance(joint, Compound):
         return ("compound joint: it cannot be a chord",)
-    parts = ["prescribed" if joint.drive is not None else count(joint.freedoms, "freedom")]
+    free = count(joint.freedoms, "freedom") if joint.freedoms else "no freedom"
+    parts = ["prescribed" if joint.drive is not None else free]
     acting = {getattr(e, "joint", None) for e in model.elements}
     if not (joint.effort or joint.name in acting or joint.start is not None):
         parts.append("nothing acts in it")

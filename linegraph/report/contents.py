@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
+from linegraph.notation.tree import rounded
 from linegraph.report.choice import chosen_tree
-from linegraph.report.document import Document, short_of_digits
+from linegraph.report.document import Document, formulas
 from linegraph.report.forms import Forms
 from linegraph.report.graphs import system_graph, terminal_graphs, topological
 from linegraph.report.laws import terminal_equations
@@ -17,6 +19,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from linegraph.derive import Derivation
+
+
+SOURCE = re.compile(r"Derived from [^.]*\b[0-9a-f]{64}\.?")
 
 
 def document(
@@ -48,6 +53,14 @@ def document(
         *Forms(subject, tell).sections(),
     ]
     title = f"Equations of motion of {derivation.model.name}"
-    whole = Document(title, derivation.model.about, tuple(sections))
-    first = conventions(subject, short_of_digits(whole))
-    return Document(title, derivation.model.about, (first, *sections))
+    first = conventions(subject, any(map(rounded, formulas(tuple(sections)))))
+    about, source = _told(derivation.model.about)
+    return Document(title, about, (first, *sections), source)
+
+
+def _told(about: str) -> tuple[str, str]:
+    """What a model says of itself, and from which file it was made, which stands at the end."""
+    found = SOURCE.search(about)
+    if found is None:
+        return about, ""
+    return (about[: found.start()] + about[found.end() :]).strip(), found[0].strip()

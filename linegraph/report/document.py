@@ -20,12 +20,12 @@ from linegraph.notation.tree import (
     Relation,
     Root,
     Sum,
-    rounded,
 )
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from linegraph.drawing.scene import Scene
     from linegraph.graph import IntegerMatrix
     from linegraph.topology import Topology
 
@@ -129,7 +129,7 @@ class Listing:
 class Picture:
     """A drawing, and the graph it is of, for where no drawing can be shown."""
 
-    svg: str
+    scene: Scene
     about: str
     topology: Topology | None = None
 
@@ -152,6 +152,8 @@ class Document:
     title: str
     about: str
     sections: tuple[Section, ...]
+    source: str = ""
+    """What it was made from, in small print."""
 
 
 def said(*text: Inline) -> Paragraph:
@@ -177,8 +179,3 @@ def formulas(blocks: tuple[Block, ...]) -> Iterator[Math]:
 
 def _of(text: Text) -> Iterator[Math]:
     return (part for part in text if isinstance(part, FORMULA))
-
-
-def short_of_digits(document: Document) -> bool:
-    """Whether any number in it was rounded."""
-    return any(map(rounded, formulas(document.sections)))

@@ -22,7 +22,7 @@ from linegraph.notation.tree import (
 )
 from linegraph.notation.writing import pieces
 from linegraph.program import Result, operations_of
-from linegraph.report.document import Block, Code, Formulas, Listing, Row, Section, said
+from linegraph.report.document import Block, Code, Formulas, Inline, Listing, Row, Section, said
 from linegraph.report.intermediates import listed_program
 from linegraph.report.laws import vector
 from linegraph.report.system import letter, listed, motion_equation
@@ -120,17 +120,7 @@ class Forms:
 
     def tree(self, expression: Any) -> Math:
         """An expression as a formula."""
-        return self._subject.look.tree(self._valued(expression))
-
-    def _valued(self, expression: Any) -> Any:
-        if not self._subject.folded:
-            return expression
-        values = {
-            name: p.value
-            for name, p in self._subject.model.parameters.items()
-            if p.value is not None
-        }
-        return expression.subs(values)
+        return self._subject.look.tree(self._subject.valued(expression))
 
     # -- sections
 
@@ -149,7 +139,10 @@ class Forms:
 
     def _motion(self) -> Section:
         self._tell("equations of motion")
-        blocks: list[Block] = [said("In ", motion_equation(self._subject))]
+        subject = self._subject
+        blocks: list[Block] = [
+            said("In ", motion_equation(subject), " the mass matrix, the bias and the forces are")
+        ]
         if self.short:
             blocks += self._matrix("M", self.closed.mass_matrix, symmetric=True)
             blocks += self._matrix("h", self.closed.bias)
@@ -168,23 +161,24 @@ class Forms:
 
     def _forces(self) -> list[Block]:
         """Q of a long system: mostly an effort for each row."""
-        entries = [self._nodes(x) for x in self._functions.efforts]
+        entries = [self._nodes(x, entries=True) for x in self._functions.efforts]
         if len(str(entries)) > 40000:
             return [said("Q is listed with the functions that `emit` writes.")]
         rows = [Row(Name("Q", (str(k),)), x) for k, x in enumerate(entries, 1)]
         return [said("The forces are"), Formulas(tuple(rows))]
 
-    def _nodes(self, x: Any) -> Math:
+    def _nodes(self, x: Any, *, entries: bool = False) -> Math:
         from linegraph.report.intermediates import symbols_of
         from linegraph.report.nodes import Nodes
 
-        return Nodes(symbols_of(self._subject))(x)
+        return Nodes(symbols_of(self._subject, entries=entries))(x)
 
     def _listed(self, which: str) -> list[Block]:
         listing, results, operations = listed_program(self._subject, which)
         text = (
             f"They are too long to be read in one piece ({operations} operations), so parts that are used "
-            "again have names z, and s and c are sines and cosines. Group by group, in the order of the tree:"
+            "again have names z, and s and c are sines and cosines; coordinates, velocities and inputs go by "
+            "their places in the table above. Group by group, in the order of the tree:"
         )
         return [said(text), listing, said("With these"), Formulas(tuple(results))]
 
@@ -324,14 +318,15 @@ class Forms:
     def _reactions(self) -> Section:
         self._tell("reactions")
         subject = self._subject
-        axes = {"tail": "in the axes of the joint's tail", "ground": "in the axes of ground"}
-        where = axes.get(subject.model.choices.reactions, "in the axes of the joint's head")
-        text = (
-            "Once v̇ is known, and λ with loops, every other variable follows from the circuit and the cutset "
-            "equations. The force and the torque that a joint exerts on its head, its effort included and "
-            f"the elements in it not, about the origin of its head and {where}:"
-        )
-        blocks: list[Block] = [said(text)]
+        axes = {"tail": "the tail", "ground": "ground"}
+        where = axes.get(subject.model.choices.reactions, "the head")
+        once: list[Inline] = ["Once ", letter("v", dots=1)]
+        once += [" and ", letter("λ"), " are known"] if subject.tree.closed else [" is known"]
+        blocks: list[Block] = [said(
+            *once, ", every other variable follows from the circuit and the cutset equations. A joint ",
+            "exerts a force ", Name("f", bold=True), " and a torque ", Name("τ", bold=True), " on its head, ",
+            f"given here about the origin of the head, in the axes of {where}. The joint's effort is part ",
+            "of them, elements in the joint are not; components that are not shown are zero.")]  # fmt: skip
         if self.short_reactions:
             for joint in subject.model.joints:
                 force, torque = self.closed.reaction(joint.name)
@@ -361,6 +356,7 @@ def _components(row: Row) -> list[Row]:
     return [
         Row(Name(left.letter, (*left.subs, axis)), entry)
         for axis, (entry,) in zip("xyz", row.right.rows, strict=True)
+        if entry != ZERO
     ]
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from linegraph.domains import ROTATION, SPATIAL, TRANSLATION
-from linegraph.drawing.mechanism import mechanism_svg
-from linegraph.drawing.pictures import chosen_panels, graph_svg
+from linegraph.drawing.mechanism import mechanism_scene
+from linegraph.drawing.pictures import chosen_panels, graph_scene
 from linegraph.errors import ModelError
 from linegraph.notation.tree import ZERO, Name
 from linegraph.report.document import (
@@ -28,8 +29,8 @@ if TYPE_CHECKING:
     from linegraph.report.subject import Subject
     from linegraph.topology import Topology
 
-MOST_WRITTEN = 16
-"""Of a graph with more edges equations are not written a second time for rotation."""
+MOST_WRITTEN = 20
+"""Of a graph with more edges equations are read off their matrix, which is not repeated, either."""
 
 
 def topologies(subject: Subject) -> list[tuple[str, Topology]]:
@@ -55,14 +56,15 @@ def terminal_graphs(subject: Subject) -> Section:
         for edge in projection.edges:
             own = order.setdefault(edge.component, {})
             own.setdefault(edge.name, (edge, []))[1].append(projection.domain)
-    rows = []
+    places = {listed([called(d) for d in where]) for e in order.values() for _, where in e.values()}
+    alike = len(places) == 1
+    rows: list[tuple[Text, ...]] = []
     for component, edges in order.items():
         for k, (edge, domains) in enumerate(edges.values()):
             first: Text = (Code(component),) if k == 0 else ()
-            where = listed([called(d) for d in domains])
-            rows.append(
-                (first, (Code(edge.name),), (Code(edge.tail), " → ", Code(edge.head)), (where,))
-            )
+            name: Text = (Code(edge.name),)
+            row: tuple[Text, ...] = (first, name, (Code(edge.tail), " → ", Code(edge.head)))
+            rows.append(row if alike else (*row, (listed([called(d) for d in domains]),)))
     text = (
         "Each component shows its terminals only; between two of them an edge is measured, and the edges of "
         "a component are its terminal graph."
@@ -72,8 +74,9 @@ def terminal_graphs(subject: Subject) -> Section:
             " A body has an inertia edge from ground to its mass centre and a rigid arm from there to each "
             "of its frames; joints, elements and loads are edges between frames."
         )
-    table = Table(("component", "edge", "tail → head", "subspace"), tuple(rows))
-    return Section("Terminal graphs of the components", (said(text), table))
+    text += f" All edges are in {places.pop()}." if alike else ""
+    head = ("component", "edge", "tail → head", *([] if alike else ["subspace"]))
+    return Section("Terminal graphs of the components", (said(text), Table(head, tuple(rows))))
 
 
 def system_graph(subject: Subject) -> Section:
@@ -93,10 +96,10 @@ def _mechanism(subject: Subject) -> list[Block]:
     if not subject.model.bodies:
         return []
     try:
-        svg = mechanism_svg(subject.derivation)
+        scene = mechanism_scene(subject.derivation)
     except ModelError as error:
         return [said(f"There is no sketch: {error.thing} {error.problem}.")]
-    return [Picture(svg, "The mechanism.")]
+    return [Picture(scene, "The mechanism.")]
 
 
 def _graph(subject: Subject, topology: Topology) -> list[Block]:
@@ -106,9 +109,9 @@ def _graph(subject: Subject, topology: Topology) -> list[Block]:
         f"{count(len(projection.edges), 'edge')}: {count(len(topology.branches), 'branch', 'branches')} and "
         f"{count(len(topology.chords), 'chord')}."
     )
-    about = f"The system graph in {called(projection.domain)}; edges of the tree are bold."
     names = next(n for n, t in chosen_panels(subject.derivation) if t is topology)
-    picture = Picture(graph_svg(subject.derivation, names), about, topology)
+    about = f"The system graph in {listed([called(n) for n in names])}; edges of the tree are bold."
+    picture = Picture(graph_scene(subject.derivation, names), about, topology)
     return [said(f"It has {size}"), picture, *_incidence(projection)]
 
 
@@ -146,50 +149,79 @@ def topological(subject: Subject) -> Section:
         ]
     shown: list[object] = []
     for domain, title, topology in pairs:
-        if topology.cutset in shown and len(topology.projection.edges) > MOST_WRITTEN:
-            through, across = subject.through(domain, ""), subject.across(domain, "")
-            text = ("The same equations as in translation, with torques ", Name(through.letter, bold=True),
-                    " about the origin of ground for forces and angular velocities ",
-                    Name(across.letter, bold=True), " for velocities.")  # fmt: skip
-            blocks.append(Section(f"In {title}", (said(*text),)))
-            continue
-        inner = _equations(subject, domain, topology)
-        if topology.branches and topology.chords:
-            if topology.cutset in shown:
-                inner.append(said("The matrices are those in translation."))
-            else:
-                inner += [
-                    said("A of the cutset equations [U A] Y = 0:"),
-                    Matrix("A", topology.cutset, ("branches", "chords")),
-                    said("B of the circuit equations [B U] X = 0:"),
-                    Matrix("B", topology.circuit, ("chords", "branches")),
-                ]
-                shown.append(topology.cutset)
+        again = topology.cutset in shown
+        shown.append(topology.cutset)
+        large = len(topology.projection.edges) > MOST_WRITTEN
+        inner = _as_matrices(subject, domain, topology, again) if large else [
+            *_equations(subject, domain, topology), *_matrices(topology, again)]  # fmt: skip
         blocks.append(Section(f"In {title}", tuple(inner)))
     return Section("Cutset and circuit equations", tuple(blocks))
 
 
+def _matrices(topology: Topology, again: bool) -> list[Block]:
+    if not (topology.branches and topology.chords):
+        return []
+    if again:
+        return [said("The matrices are those in translation.")]
+    return [
+        said("A of the cutset equations [U A] Y = 0:"),
+        Matrix("A", topology.cutset, ("branches", "chords")),
+        said("B of the circuit equations [B U] X = 0:"),
+        Matrix("B", topology.circuit, ("chords", "branches")),
+    ]
+
+
+def _as_matrices(subject: Subject, domain: str, topology: Topology, again: bool) -> list[Block]:
+    """Of a large graph the matrix, and how an equation is read off: written out they fill pages."""
+    if again:
+        through, across = subject.through(domain, ""), subject.across(domain, "")
+        return [said(
+            "The same equations as in translation, with torques ", Name(through.letter, bold=True),
+            " about the origin of ground for forces and angular velocities ",
+            Name(across.letter, bold=True), " for velocities.")]  # fmt: skip
+    if not (topology.branches and topology.chords):
+        return _equations(subject, domain, topology)
+    cut, circuit = min(
+        (_cut(subject, domain, topology, k) for k in range(len(topology.cutset.rows))), key=_length
+    ), min(
+        (_circuit(subject, domain, topology, k) for k in range(len(topology.circuit.rows))),
+        key=_length,
+    )  # fmt: skip
+    return [
+        said("A of the cutset equations [U A] Y = 0, a row for each branch and a column for each chord:"),
+        Matrix("A", topology.cutset, ("branches", "chords")),
+        said("A row is a cutset equation: the through variable of its branch and, with their signs, those "
+             "of its chords add up to zero. The shortest of them is"),
+        Formulas((cut,)),
+        said("A column turned round in sign is a circuit equation, since B = −Aᵀ in [B U] X = 0: the across "
+             "variable of its chord and those of its branches add up to zero. The shortest of them is"),
+        Formulas((circuit,)),
+    ]  # fmt: skip
+
+
+def _length(row: Row) -> int:
+    """Summands, at least two."""
+    return len(getattr(row.left, "terms", ())) or MOST_WRITTEN
+
+
+def _cut(subject: Subject, domain: str, topology: Topology, row: int) -> Row:
+    """A cutset equation."""
+    first = subject.through(domain, topology.cutset.rows[row])
+    of = partial(subject.through, domain)
+    return Row(subject.combined(topology.cutset, row, first, of), ZERO)
+
+
+def _circuit(subject: Subject, domain: str, topology: Topology, row: int) -> Row:
+    """A circuit equation."""
+    first = subject.across(domain, topology.circuit.rows[row])
+    of = partial(subject.across, domain)
+    return Row(subject.combined(topology.circuit, row, first, of), ZERO)
+
+
 def _equations(subject: Subject, domain: str, topology: Topology) -> list[Block]:
     blocks: list[Block] = []
-    cutset, circuit = topology.cutset, topology.circuit
-    cuts = [
-        Row(
-            subject.combined(
-                cutset, i, subject.through(domain, name), lambda e: subject.through(domain, e)
-            ),
-            ZERO,
-        )
-        for i, name in enumerate(cutset.rows)
-    ]
-    circuits = [
-        Row(
-            subject.combined(
-                circuit, i, subject.across(domain, name), lambda e: subject.across(domain, e)
-            ),
-            ZERO,
-        )
-        for i, name in enumerate(circuit.rows)
-    ]
+    cuts = [_cut(subject, domain, topology, k) for k in range(len(topology.cutset.rows))]
+    circuits = [_circuit(subject, domain, topology, k) for k in range(len(topology.circuit.rows))]
     if domain in SPATIAL and domain == ROTATION.name:
         blocks.append(said(
             "Torques are those about the origin of ground here, marked by a capital letter, so that the "

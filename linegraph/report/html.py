@@ -9,6 +9,7 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
+from linegraph.drawing.svg import svg_text
 from linegraph.notation.mathml import MathMl
 from linegraph.notation.plain import Plain
 from linegraph.notation.writing import pieces, visible
@@ -60,6 +61,7 @@ def render(document: Document) -> str:
         "<body>",
         "<main>",
         *body,
+        *([f"<footer>{shown(document.source)}</footer>"] if document.source else []),
         "</main>",
         "</body>",
         "</html>",
@@ -115,14 +117,9 @@ def _block(block: Block) -> Iterator[str]:
                 yield f'<p class="label">{shown(group.label)}</p>'
                 yield from _formulas(group.rows)
             yield "</div>"
-        case Picture() if block.svg:
-            caption = f"<figcaption>{shown(block.about)}</figcaption>"
-            yield f"<figure>{_inside(block.svg)}{caption}</figure>"
-
-
-def _inside(svg: str) -> str:
-    """A drawing without what only a file of its own has at its head."""
-    return svg[svg.index("<svg") :].strip()
+        case Picture(scene, about):
+            caption = f"<figcaption>{shown(about)}</figcaption>"
+            yield f"<figure>{svg_text(scene).strip()}{caption}</figure>"
 
 
 def said(text: Text) -> str:

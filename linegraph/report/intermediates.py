@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from linegraph.expression import SYMBOL, Node
@@ -26,11 +27,19 @@ ONLY = {
 }
 """For each listing the functions to derive, and which of them are shown."""
 
+ENTRIES = {"q": "q", "v": "v", "a": "v", "u": "u"}
+"""Letters of the columns whose entries the table of coordinates numbers."""
+
 LETTERS = {"gamma": "γ", "gam": "γ", "phi": "φ"}
 
 
-def symbols_of(subject: Subject) -> Callable[[str, Any], Math]:
-    """The look of the symbols that programs read."""
+def symbols_of(subject: Subject, *, entries: bool = False) -> Callable[[str, Any], Math]:
+    """The look of the symbols that programs read.
+
+    Args:
+        subject: what is reported on.
+        entries: write q, v, v̇ and u by their places, as long listings need it.
+    """
     arguments = {
         "q": subject.q_names,
         "v": subject.v_names,
@@ -40,7 +49,18 @@ def symbols_of(subject: Subject) -> Callable[[str, Any], Math]:
         "loop": [] if subject.network is None else list(subject.network.loop_names),
     }
 
+    taken = {(name.letter, name.subs) for name in subject.look.names.values()}
+    short = {
+        argument
+        for argument, letter in ENTRIES.items()
+        if not any((letter, (str(k + 1),)) in taken for k in range(len(arguments[argument])))
+    }
+
     def symbol(argument: str, place: Any) -> Math:
+        if entries and argument in short:
+            look = subject.look.name(arguments[argument][place])
+            own = Name(ENTRIES[argument], (str(place + 1),), dots=int(argument == "a"))
+            return replace(own, role=look.role, place=place)
         if argument in arguments:
             return subject.look.name(arguments[argument][place])
         return subject.look.name(argument if place is None else str(place))
@@ -74,7 +94,7 @@ class _Steps:
 
     def __init__(self, subject: Subject) -> None:
         self._subject = subject
-        self._symbol = symbols_of(subject)
+        self._symbol = symbols_of(subject, entries=True)
         self._count = 0
         taken = {(name.letter, name.subs) for name in subject.look.names.values()}
         size = range(1, len(subject.q_names) + 1)

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from linegraph.drawing.latex import PREAMBLE, picture
 from linegraph.notation.latex import Latex, escaped
 from linegraph.notation.plain import Plain
 from linegraph.notation.tree import Name
+from linegraph.notation.writing import pieces
 from linegraph.report.document import (
     Block,
     Code,
     Document,
     Formulas,
+    Group,
     Listing,
     Matrix,
     Paragraph,
@@ -37,6 +40,12 @@ MOST_COLUMNS = 18
 NARROW = 16
 """A column of so many characters is never broken."""
 
+MANY, HALF, THIRD = 12, 42, 28
+"""So many equations of so few characters stand in two columns; steps without a longer part in three."""
+
+WIDE, HIGH, LOW = 472, 560, 270
+"""The place of a picture in points: its width, its height for a graph, its height for a sketch."""
+
 LEVELS = ("section", "subsection", "subsubsection", "paragraph")
 
 HEAD = r"""\documentclass[11pt,a4paper,fleqn]{article}
@@ -51,6 +60,8 @@ HEAD = r"""\documentclass[11pt,a4paper,fleqn]{article}
 \usepackage{longtable}
 \usepackage{booktabs}
 \usepackage{graphicx}
+\usepackage{color}
+\usepackage{multicol}
 \usepackage[hidelinks]{hyperref}
 \allowdisplaybreaks
 \setlength{\parindent}{0pt}
@@ -61,13 +72,14 @@ HEAD = r"""\documentclass[11pt,a4paper,fleqn]{article}
 \setcounter{MaxMatrixCols}{40}
 \emergencystretch=3em
 \newcolumntype{L}[1]{>{\raggedright\arraybackslash}p{#1\linewidth}}
+\newcommand{\step}[1]{\par\hangindent=1.5em #1}
 """
 
 
 def render(document: Document) -> str:
     """The text of a report."""
     lines = [
-        HEAD + rf"\title{{{escaped(document.title)}}}",
+        HEAD + PREAMBLE + rf"\title{{{escaped(document.title)}}}",
         r"\author{}",
         r"\date{}",
         r"\begin{document}",
@@ -80,6 +92,8 @@ def render(document: Document) -> str:
     lines.append(r"{\setlength{\parskip}{0pt}\tableofcontents}")
     for section in document.sections:
         lines += _section(section, 0)
+    if document.source:
+        lines += ["", rf"\bigskip{{\footnotesize\raggedright {breakable(document.source)}\par}}"]
     return "\n".join([*lines, r"\end{document}"]) + "\n"
 
 
@@ -106,12 +120,15 @@ def _block(block: Block) -> list[str]:
         case Formulas(rows):
             return _display(rows)
         case Listing(groups):
-            lines: list[str] = []
-            for group in groups:
-                lines += [rf"\textit{{{escaped(group.label)}}}", *_display(group.rows)]
-            return lines
-        case Picture():
-            return []
+            return _listing(groups)
+        case Picture(scene, about):
+            drawn = picture(scene, WIDE, HIGH if block.topology else LOW)
+            return [
+                r"\begin{center}",
+                drawn,
+                rf"\\[1ex]{{\small {escaped(about)}}}",
+                r"\end{center}",
+            ]
     raise TypeError(block)
 
 
@@ -168,7 +185,36 @@ def _broken(row: Row, width: int) -> list[str]:
 
 
 def _display(rows: Sequence[Row]) -> list[str]:
+    size = max(typeset(Plain()(row.left)) + _solid(row) for row in rows)
+    length = max(typeset(Plain()(row.right)) for row in rows)
+    if len(rows) >= MANY and size <= HALF and length <= WIDTH:
+        lines = [r"\begin{multicols}{2}\raggedright\raggedcolumns"]
+        return [*lines, *map(_step, rows), r"\end{multicols}"]
     return [r"\begin{align*}", *aligned(rows, WIDTH), r"\end{align*}"]
+
+
+def _listing(groups: Sequence[Group]) -> list[str]:
+    """Steps in columns, small: TeX breaks them where it finds room."""
+    rows = [row for group in groups for row in group.rows]
+    columns = 3 if max(map(_solid, rows), default=0) <= THIRD else 2
+    lines = [
+        r"{\footnotesize\setlength{\columnsep}{1.2em}\setlength{\parskip}{1pt plus 1pt}",
+        r"\setlength{\multicolsep}{4pt}\raggedcolumns"
+        rf"\begin{{multicols}}{{{columns}}}\raggedright",
+    ]
+    for group in groups:
+        lines.append(rf"\par\medskip\textit{{{escaped(group.label)}}}\nopagebreak")
+        lines += map(_step, group.rows)
+    return [*lines, r"\end{multicols}}"]
+
+
+def _solid(row: Row) -> int:
+    """The longest part in which TeX finds no place to break."""
+    return max(typeset(piece) for _, piece in pieces(Plain().marked(row.right)))
+
+
+def _step(row: Row) -> str:
+    return rf"\step{{${Latex()(row.left)} {row.sign} {Latex()(row.right)}$}}"
 
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[Text]]) -> list[str]:
@@ -191,7 +237,7 @@ def _widths(head: Sequence[str], rows: Sequence[Sequence[Text]]) -> list[float]:
     longest = [
         max([len(title), 3, *(len(plain(row[j])) for row in rows)]) for j, title in enumerate(head)
     ]
-    needed = [0.0155 * size + 0.012 for size in longest]
+    needed = [0.0122 * size + 0.012 for size in longest]
     gaps = 0.014 * len(head)
     if sum(needed) + gaps <= 1:
         return needed
@@ -229,11 +275,14 @@ def _matrix(matrix: IntegerMatrix) -> list[str]:
 
 
 def _sums(matrix: IntegerMatrix) -> list[str]:
-    lines = [r"{\small\raggedright"]
+    lines = [
+        r"{\footnotesize\setlength{\parskip}{1pt}\setlength{\multicolsep}{4pt}",
+        r"\begin{multicols}{2}\raggedright",
+    ]
     for name, row in zip(matrix.rows, matrix.entries, strict=True):
         terms = [
             rf"${'+' if value > 0 else '-'}$\,\textsf{{{breakable(matrix.columns[j])}}}"
             for j, value in sorted(row.items())
         ]
-        lines.append(rf"\textsf{{{breakable(name)}}}: {' '.join(terms) or '0'}\par")
-    return [*lines, "}"]
+        lines.append(rf"\step{{\textsf{{{breakable(name)}}}: {' '.join(terms) or '0'}}}")
+    return [*lines, r"\end{multicols}}"]

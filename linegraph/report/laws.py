@@ -154,7 +154,11 @@ def _joint(subject: Subject, joint: Joint) -> tuple[Text, Text]:
     if not shown:
         shown.append("none")
     efforts: list[Inline] = []
-    for quantity in joint.velocities() if joint.effort and joint.drive is None else ():
+    given = {quantity.name for quantity in subject.tree.inputs}
+    acting = joint.effort and joint.drive is None
+    for quantity in joint.velocities() if acting else ():
+        if quantity.name not in given:
+            continue  # it follows another joint
         name = f"u_{quantity.name}" if f"u_{quantity.name}" in subject.look.names else quantity.name
         efforts += [", "] if efforts else []
         efforts.append(subject.look.name(name))

@@ -39,6 +39,8 @@ def render(document: Document) -> str:
         parts.append(words(document.about))
     for section in document.sections:
         parts += _section(section, 2)
+    if document.source:
+        parts.append(f"<sub>{words(document.source)}</sub>")
     return "\n\n".join(part for part in parts if part) + "\n"
 
 

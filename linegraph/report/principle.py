@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.body import MASS_CENTER
 from linegraph.domains import ROTATION, TRANSLATION
 from linegraph.elements import Load
 from linegraph.notation.tree import TRANSPOSED, ZERO, Math, Name, Over, Power, Product, Sum, total
@@ -18,6 +17,7 @@ from linegraph.report.laws import (
     pull_of,
     vector,
 )
+from linegraph.report.motion import motion
 from linegraph.report.system import letter, motion_equation
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def connecting(subject: Subject) -> Section:
     blocks: list[Block] = [said("Connecting equations tie the subspaces to each other.")]
     if subject.model.bodies:
         blocks.append(Section("Translation and rotation", _arms(subject)))
-        blocks.append(Section("Motion in terms of the velocities", _motion(subject)))
+        blocks.append(Section("Motion in terms of the velocities", motion(subject)))
     ports = [] if subject.network is None else subject.network.ports
     if ports:
         names = ", ".join(branch.name for branch in ports)
@@ -71,36 +71,6 @@ def _arms(subject: Subject) -> tuple[Block, ...]:
         ]
         blocks.append(Formulas(tuple(of)))
     return tuple(blocks)
-
-
-def _motion(subject: Subject) -> tuple[Block, ...]:
-    """Angular velocities of bodies as sums along the tree, positions of mass centres likewise."""
-    rows = []
-    derivation = subject.derivation
-    paths: dict[str, list[tuple[bool, Math]]] = {}
-    for body in subject.model.bodies:
-        if body in derivation.formulation.absolute:
-            paths[body] = [(False, vector("ω", f"{body}/inertia"))]
-    owner = {vertex: body for vertex, (body, _) in subject.model.terminals().items()}
-    owner |= {f"{body}.{MASS_CENTER}": body for body in subject.model.bodies}
-    for step in derivation.formulation.rotation.walk:
-        near, far = owner.get(step.near, "ground"), owner.get(step.far, "ground")
-        if near == far or far in paths:
-            continue
-        before = paths.get(near, [])
-        paths[far] = [*before, (not step.forward, vector("ω", step.edge.name))]
-    for body in subject.model.bodies:
-        rows.append(Row(vector("ω", body), total(paths.get(body, []), ordered=False)))
-    text = (
-        "By the circuit equations of rotation the angular velocity of a body is the sum of those of the "
-        "joints on its way to ground:"
-    )
-    after = (
-        "and its mass centre's velocity is the sum of those across arms and joints on the same way, as the "
-        "circuit equations of translation say. With the motions of the joints, every across variable is "
-        "linear in the velocities."
-    )
-    return (said(text), Formulas(tuple(rows)), said(after))
 
 
 # ---- orthogonality
@@ -201,11 +171,14 @@ def _varied(name: Name) -> Name:
 def _efforts(subject: Subject) -> list[tuple[bool, Math]]:
     """Efforts of joints along their velocities."""
     terms: list[tuple[bool, Math]] = []
+    given = {quantity.name for quantity in subject.tree.inputs}
     for joint in subject.model.joints:
         if not joint.effort or joint.drive is not None:
             continue
         own = [quantity.name for quantity in joint.positions()]
         for quantity in joint.velocities():
+            if quantity.name not in given:
+                continue  # it follows another joint
             name = f"u_{quantity.name}"
             effort = subject.look.name(name if name in subject.look.names else quantity.name)
             rate = f"{quantity.name}_dot" if quantity.name in own else quantity.name

@@ -52,6 +52,8 @@ table.matrix tbody th { font-weight: normal; white-space: nowrap; padding-right:
 figure { margin: 1rem 0; text-align: center; }
 figure svg { max-width: 100%; height: auto; background: #ffffff; border-radius: 0.3rem; }
 figcaption { color: var(--soft); font-size: 0.9rem; }
+footer { margin-top: 3rem; padding-top: 0.6rem; border-top: 1px solid var(--line); color: var(--soft);
+  font-size: 0.8rem; overflow-wrap: anywhere; }
 @media (max-width: 40rem) { main { padding: 0.8rem 0.8rem 3rem; } .eqs { padding-left: 0; }
   h1 { font-size: 1.5rem; } }
 @page { size: A4; margin: 18mm 16mm; }

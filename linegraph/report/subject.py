@@ -96,6 +96,13 @@ class Subject:
 
         return self.look.tree(sympify(x, strict=True))
 
+    def valued(self, expression: Any) -> Any:
+        """A sympy expression, parameters as numbers where that is asked for."""
+        if not self.folded:
+            return expression
+        given = self.model.parameters.items()
+        return expression.subs({name: p.value for name, p in given if p.value is not None})
+
     def vector(self, values: Iterable[Any]) -> Math:
         """Components in brackets; 0 where all are."""
         entries = tuple(self.value(x) for x in values)

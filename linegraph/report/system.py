@@ -5,11 +5,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from linegraph.joints.base import BY_INPUT
-from linegraph.notation.tree import TRANSPOSED, ZERO, Name, Power, Product, Relation, Sum, total
+from linegraph.notation.tree import (
+    TRANSPOSED,
+    ZERO,
+    Name,
+    Power,
+    Product,
+    Relation,
+    Sum,
+    product,
+    total,
+)
 from linegraph.report.document import Block, Code, Inline, Section, Table, Text, said
 
 if TYPE_CHECKING:
-    from linegraph.body import Body
     from linegraph.joints import Joint
     from linegraph.report.subject import Subject
 
@@ -123,37 +132,50 @@ def listed(parts: list[str]) -> str:
 
 
 def _bodies(subject: Subject) -> tuple[Block, ...] | None:
-    if not subject.model.bodies:
+    bodies = subject.model.bodies.values()
+    if not bodies:
         return None
     rows = []
-    for body in subject.model.bodies.values():
+    for body in bodies:
         center = subject.vector((body.center if body.first is None else body.first) or ())
         frames: list[Inline] = []
         for name, placement in body.frames.items():
             frames += [", "] if frames else []
             frames += [Code(name), " at ", subject.vector(placement.at)]
         place: Text = (center,) if body.first is None else ("first moment ", center)
-        inertia = _inertia(subject, body)
-        rows.append(
-            ((Code(body.name),), (subject.value(body.mass),), place, inertia, tuple(frames))
-        )
-    head = ("body", "mass / kg", "mass centre / m", "inertia / kg m²", "frames / m")
+        rows.append(((Code(body.name),), (subject.value(body.mass),), place, tuple(frames)))
+    table = Table(("body", "mass / kg", "mass centre / m", "frames / m"), tuple(rows))
+    return (table, *_inertias(subject))
+
+
+def _inertias(subject: Subject) -> list[Block]:
+    """A row for each body that has any, a column for each product that is not zero everywhere."""
+    bodies = [b for b in subject.model.bodies.values() if any(x != 0 for x in b.inertia)]
+    if not bodies:
+        return [said("No body has an inertia of its own.")]
+    used = [k for k, axes in enumerate(AXES)
+            if axes[0] == axes[1] or any(b.inertia[k] != 0 for b in bodies)]  # fmt: skip
     about = (
-        "Inertias are taken about the mass centre in the axes of the body"
+        "Inertias about the mass centre, in the axes of the body"
         if all(body.first is None for body in subject.model.bodies.values())
-        else "Inertias are about the mass centre, or about the origin where a first moment is given"
+        else "Inertias about the mass centre, or about the origin where a first moment is given"
     )
-    return (Table(head, tuple(rows)), said(f"{about}; entries that are not shown are zero."))
+    about += ", in kg m²"
+    if len(bodies) < len(subject.model.bodies):
+        about += "; bodies without inertia are left out"
+    head = ("body", *(f"J {AXES[k]}" for k in used))
+    rows = [((Code(b.name),), *((subject.value(b.inertia[k]),) for k in used)) for b in bodies]
+    return [said(f"{about}:"), Table(head, tuple(rows))]
 
 
-def _inertia(subject: Subject, body: Body) -> Text:
-    text: list[Inline] = []
-    for axes, x in zip(AXES, body.inertia, strict=True):
-        value = subject.value(x)
-        if value != ZERO:
-            text += [", "] if text else []
-            text.append(Relation(Name("J", (axes,)), "=", value))
-    return tuple(text) or ("0",)
+def unit_of(text: str) -> str:
+    """A unit as it is printed.
+
+    Example:
+        >>> unit_of("kg*m^2"), unit_of("N*m*s/rad")
+        ('kg m²', 'N m s/rad')
+    """
+    return text.replace("*", " ").replace("^2", "²").replace("^3", "³")
 
 
 def _joints(subject: Subject) -> tuple[Block, ...] | None:
@@ -177,7 +199,7 @@ def _remark(subject: Subject, joint: Joint) -> Text:
         if coupling.joint == joint.name:
             master = subject.look.name(coupling.master)
             ratio, offset = subject.value(coupling.ratio), subject.value(coupling.offset)
-            follows = total([(False, Product((ratio, master))), (False, offset)], ordered=False)
+            follows = total([(False, product([ratio, master])), (False, offset)], ordered=False)
             text += ["follows: ", Relation(subject.look.name(joint.name), "=", follows)]
     if joint.drive is not None:
         given = joint.drive if isinstance(joint.drive, (tuple, list)) else (joint.drive,)
@@ -242,7 +264,13 @@ def _parameters(subject: Subject) -> tuple[Block, ...] | None:
         value: Text = ("–",) if parameter.value is None else (subject.value(parameter.value),)
         name = subject.look.name(parameter.name)
         rows.append(
-            ((Code(parameter.name),), (name,), value, (parameter.unit,), (parameter.about,))
+            (
+                (Code(parameter.name),),
+                (name,),
+                value,
+                (unit_of(parameter.unit),),
+                (parameter.about,),
+            )
         )
     head = ("parameter", "symbol", "value", "unit", "meaning")
     return (Table(head, tuple(rows)),) if rows else None
@@ -259,7 +287,7 @@ def _state(subject: Subject) -> tuple[Block, ...]:
         for k, (name, quantity) in enumerate(zip(names, quantities, strict=True), 1):
             symbol = subject.look.name(name)
             of = Name(letter_, (str(k),))
-            rows.append(((of,), (symbol,), (quantity.unit,), (quantity.about,)))
+            rows.append(((of,), (symbol,), (unit_of(quantity.unit),), (quantity.about,)))
     return (Table(("", "symbol", "unit", "meaning"), tuple(rows)),) if rows else (said("None."),)
 
 

@@ -39,6 +39,8 @@ def render(document: Document) -> str:
         lines += [*_wrapped(visible(document.about)), ""]
     for section in document.sections:
         lines += _section(section, 1)
+    if document.source:
+        lines += ["", *_wrapped(visible(document.source))]
     return "\n".join(line.rstrip() for line in lines).rstrip() + "\n"
 
 

@@ -1,0 +1,125 @@
+"""Motion in terms of the velocities: of bodies as sums along the tree, of mass centres in closed form."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from linegraph.body import MASS_CENTER
+from linegraph.errors import ModelError
+from linegraph.notation.plain import Plain
+from linegraph.notation.tree import ZERO, Listed, Math, Name, total
+from linegraph.program import Result, operations_of
+from linegraph.report.document import Block, Formulas, Row, said
+from linegraph.report.laws import vector
+
+if TYPE_CHECKING:
+    from linegraph.report.subject import Subject
+
+MOST_OPERATIONS = 150
+"""Of more operations than these the motion of mass centres is not put together."""
+
+MOST_PRODUCTS = 1000
+"""Of more products of two terms it is not, either."""
+
+MOST_PRINTED, LONGEST = 900, 280
+"""Characters of positions and velocities that a person still reads: of all, and of one vector."""
+
+LONGEST_WAY = 3
+"""Of more joints on the way to ground those before a body are put together in its own motion."""
+
+WIDEST = 76
+"""A vector of more characters is written by components."""
+
+
+def motion(subject: Subject) -> tuple[Block, ...]:
+    """Angular velocities of bodies as sums along the tree; mass centres as sums, and put together."""
+    rows = []
+    derivation = subject.derivation
+    paths: dict[str, list[tuple[bool, Math]]] = {}
+    for body in subject.model.bodies:
+        if body in derivation.formulation.absolute:
+            paths[body] = [(False, vector("ω", f"{body}/inertia"))]
+    owner = {vertex: body for vertex, (body, _) in subject.model.terminals().items()}
+    owner |= {f"{body}.{MASS_CENTER}": body for body in subject.model.bodies}
+    for step in derivation.formulation.rotation.walk:
+        near, far = owner.get(step.near, "ground"), owner.get(step.far, "ground")
+        if near == far or far in paths:
+            continue
+        before = paths.get(near, [])
+        if len(before) >= LONGEST_WAY:
+            before = [(False, vector("ω", near))]
+        paths[far] = [*before, (not step.forward, vector("ω", step.edge.name))]
+    for body in subject.model.bodies:
+        rows.append(Row(vector("ω", body), total(paths.get(body, []), ordered=False)))
+    text = (
+        "By the circuit equations of rotation the angular velocity of a body is the sum of those of the "
+        "joints on its way to ground:"
+    )
+    after = (
+        "and its mass centre's velocity is the sum of those across arms and joints on the same way, as the "
+        "circuit equations of translation say. With the motions of the joints, every across variable is "
+        "linear in the velocities."
+    )
+    return (said(text), Formulas(tuple(rows)), said(after), *centers(subject))
+
+
+def centers(subject: Subject) -> list[Block]:
+    """Where mass centres are and how they move, in the axes of ground; nothing where that is long."""
+    found = [row for row in _rows(subject) if len(Plain()(row.right)) <= LONGEST]
+    length = sum(len(Plain()(row.right)) for row in found)
+    if not found or length > MOST_PRINTED:
+        return []
+    text = (
+        "Put together along the tree, in the axes of ground: the place of a mass centre and its velocity, "
+        "which is that across the inertia edge; components that are not shown are zero:"
+    )
+    return [said(text), Formulas(tuple(short for row in found for short in _by_components(row)))]
+
+
+def _rows(subject: Subject) -> list[Row]:
+    """The place and the velocity of every mass centre; none where they have too many terms."""
+    from linegraph.shared import Functions
+
+    scheme = Functions(subject.derivation, subject.folded).scheme
+    frames = {body: scheme.center(body) for body in subject.model.bodies}
+    entries = [x for frame in frames.values() for x in (*frame.origin, *frame.linear)]
+    if operations_of((Result("", (len(entries),), tuple(entries), ""),)) > MOST_OPERATIONS:
+        return []
+    try:
+        closed = _closed(subject, entries)
+    except ModelError:
+        return []  # too many terms
+    rows = []
+    for k, body in enumerate(frames):
+        place, speed = closed[6 * k : 6 * k + 3], closed[6 * k + 3 : 6 * k + 6]
+        rows.append(Row(vector("r", f"{body}.{MASS_CENTER}"), _vector(place)))
+        rows.append(Row(vector("v", f"{body}/inertia"), _vector(speed)))
+    return rows
+
+
+def _closed(subject: Subject, entries: list[Any]) -> list[Math]:
+    from linegraph.simplification import Simplifier
+    from linegraph.symbol_names import symbol_names
+    from linegraph.sympy_walk import Sympy
+
+    names = Sympy(symbol_names(subject.derivation))
+    simplifier = Simplifier(lambda symbol: names.symbol(*symbol), subject.level, MOST_PRODUCTS)
+    found = simplifier.all(entries, "mass centres")
+    return [subject.look.tree(subject.valued(x)) for x in found]
+
+
+def _vector(entries: list[Math]) -> Math:
+    return ZERO if all(entry == ZERO for entry in entries) else Listed(tuple(entries))
+
+
+def _by_components(row: Row) -> list[Row]:
+    """A vector as one where it fits, else those of its components that are not zero."""
+    if not isinstance(row.right, Listed) or len(Plain()(row.right)) <= WIDEST:
+        return [row]
+    assert isinstance(row.left, Name)
+    left = row.left
+    return [
+        Row(Name(left.letter, (*left.subs, axis)), entry)
+        for axis, entry in zip("xyz", row.right.entries, strict=True)
+        if entry != ZERO
+    ]
