@@ -12,6 +12,7 @@ import sympy
 from sympy.polys.matrices import DomainMatrix
 
 from linegraph.errors import ModelError
+from linegraph.simplification.plain import quotient
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -71,8 +72,8 @@ class StateSpace:
     def shifted(self) -> StateSpace:
         """The same with states ``x - E u``, in which no derivative of an input is needed but by outputs."""
         zero = sympy.zeros(*self.E.shape)
-        B = (self.A * self.E + self.B).applyfunc(sympy.simplify)
-        D = (self.C * self.E + self.D).applyfunc(sympy.simplify)
+        B = (self.A * self.E + self.B).applyfunc(quotient)
+        D = (self.C * self.E + self.D).applyfunc(quotient)
         return StateSpace(
             self.states,
             self.inputs,
@@ -98,7 +99,7 @@ class StateSpace:
         # over the field of rational functions, in which every step is cancelled
         parts = [DomainMatrix.from_Matrix(sympy.nsimplify(m, rational=True)) for m in matrices]
         inner, right, C, D = (part.to_field() for part in DomainMatrix.unify(*parts))
-        return (C * inner.lu_solve(right) + D).to_Matrix().applyfunc(sympy.factor)
+        return (C * inner.lu_solve(right) + D).to_Matrix().applyfunc(quotient)
 
     def numeric(self, parameters: Mapping[str, float] | None = None) -> tuple[Any, Any, Any, Any]:
         """A, B, C, D as arrays, shifted where need be; parameters in place of the model's own.
@@ -243,12 +244,14 @@ def _read(matrix: Expr, i: int, name: str, expression: Expr, variables: Sequence
     whole = sympy.sympify(expression, strict=True)
     rest = whole
     for j, variable in enumerate(variables):
-        slope = sympy.simplify(sympy.diff(whole, variable))
+        slope = quotient(sympy.diff(whole, variable))
+        if slope.free_symbols & set(variables):
+            slope = sympy.simplify(slope)
         if slope.free_symbols & set(variables):
             raise ModelError(f'"{name}"', f"is not linear in {variable}: there is no state space")
         matrix[i, j] = slope
         rest = rest.subs(variable, 0)
-    rest = sympy.simplify(rest)
+    rest = quotient(rest)
     if rest != 0:
         problem = (
             f"has a part ({rest}) that is neither of states nor of inputs; make its source an input"

@@ -35,12 +35,12 @@ OVERSIZE: dict[str, str] = {}
 
 LAYERS: tuple[tuple[str, ...], ...] = (
     ("errors", "version", "vector", "coupling", "outputs", "notation"),
-    ("domains", "files", "functions", "graph", "state_space"),
+    ("domains", "files", "functions", "graph"),
     ("algebra", "expression", "formula", "jets"),
     ("differentiation", "residues"),
     ("coriolis", "sympy_walk"),
     ("simplification",),
-    ("tidy",),
+    ("state_space", "tidy"),
     ("parameters", "program", "rotation", "topology"),
     ("checks", "constants", "elements"),
     ("body", "choices"),

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from linegraph.differentiation import Symbol
-    from linegraph.simplification.polynomial import Terms
+    from linegraph.simplification.numbers import Terms
     from linegraph.sympy_walk import Expr
     from linegraph.vector import Scalar
 

@@ -15,17 +15,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from linegraph.simplification.polynomial import (
-    COS,
-    SIN,
-    Harmonic,
-    Poly,
-    Ring,
-    Terms,
-    gather,
-    plain,
-    unit,
-)
+from linegraph.simplification.numbers import Terms, gather, plain
+from linegraph.simplification.polynomial import COS, SIN, Harmonic, Poly, Ring, unit
 
 if TYPE_CHECKING:
     from linegraph.expression import Number

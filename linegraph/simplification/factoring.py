@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import sympy
 
+from linegraph.simplification.numbers import Terms, near, plain, reciprocal
 from linegraph.simplification.polynomial import (
     COS,
     FUNCTION,
@@ -26,10 +27,6 @@ from linegraph.simplification.polynomial import (
     Frozen,
     Harmonic,
     Ring,
-    Terms,
-    near,
-    plain,
-    reciprocal,
     unit,
 )
 from linegraph.sympy_walk import RENAMED, Expr
@@ -87,7 +84,8 @@ class Writer:
     def written(self, terms: Terms) -> Expr:
         """Collected and factored, the parameters that all terms share before all."""
         outside = self._shared_parameters(terms)
-        terms = {term - outside: k for term, k in terms.items()}
+        times = _scale(terms.values()) * _sign(terms.values(), ()) if outside else 1
+        terms = {term - outside: near(k * reciprocal(times)) for term, k in terms.items()}
         coefficients: dict[int, Terms] = {}
         for term, k in sorted(terms.items()):
             moving = sum(unit(p, e) for p, e in self.ring.exponents(term) if self.moves(p))
@@ -101,7 +99,7 @@ class Writer:
             own = first[min(first)]
             members[moving] = near(coefficient[min(coefficient)] * reciprocal(own))
         whole = sympy.Add(*(self._collected(*pair) for pair in shared.values()))
-        return self.expanded({outside: 1}) * whole
+        return sympy.Mul(self.expanded({outside: times}), whole)
 
     def _shared_parameters(self, terms: Terms) -> int:
         """What of parameters stands in every term."""

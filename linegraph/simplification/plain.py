@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
+LARGEST_DENOMINATOR = 100
+"""What floats came to be by calculating exactly stays a fraction up to here."""
+
+
 def simplify(
     expression: Any,
     level: str = "full",
@@ -64,6 +68,32 @@ def simplify(
     node = evaluate(whole.xreplace(names), dag, symbols)
     written = Simplifier(lambda symbol: atoms[symbol[1]], level, budget, progress)
     return written(node)
+
+
+def quotient(expression: Any) -> Expr:
+    """An expression as one quotient without common factors, numerator and denominator in closed form.
+
+    Example:
+        >>> m, l, g = sympy.symbols("m l g")
+        >>> quotient(-g * l * m / (-m * l**2 - m * l**2))
+        g/(2*l)
+    """
+    whole = sympy.sympify(expression, strict=True)
+    if not whole.free_symbols:
+        return whole
+    inexact = whole.has(sympy.Float)
+    above, below = sympy.fraction(
+        sympy.cancel(sympy.nsimplify(whole, rational=True) if inexact else whole)
+    )
+    signs = [term.could_extract_minus_sign() for term in sympy.Add.make_args(below)]
+    scale = sympy.Integer(-1 if 2 * sum(signs) > len(signs) else 1)
+    if inexact:  # numbers of the size that they had before denominators were cleared
+        scale /= max(abs(t.as_coeff_Mul()[0]) for t in sympy.Add.make_args(sympy.expand(below)))
+    parts = [simplify(sympy.expand(scale * part)) for part in (above, below)]
+    found = parts[0] / parts[1]
+    if not inexact:
+        return found
+    return found.replace(lambda e: e.is_Rational and e.q > LARGEST_DENOMINATOR, sympy.Float)
 
 
 def _atoms(e: Expr, known: set[Expr]) -> set[Expr]:

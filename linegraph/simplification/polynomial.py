@@ -10,18 +10,17 @@ The exponents of a term are the digits of one integer, so that multiplying terms
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from linegraph.expression import Number
 from linegraph.functions import of_numbers
+from linegraph.simplification.numbers import Terms, gather, plain, reciprocal
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from linegraph.differentiation import Symbol
 
-Terms: TypeAlias = dict[int, Number]
 Harmonic: TypeAlias = tuple[tuple[int, int], ...]
 """A sum of angles: (number of the angle, how many times it is taken), ascending."""
 
@@ -30,9 +29,6 @@ SYMBOL, SIN, COS, ROOT, INVERSE, FUNCTION = "symbol", "sin", "cos", "root", "inv
 BITS = 8
 ZERO_DIGIT = 64
 """What is added to a digit so that exponents may be negative; they stay below it."""
-
-ROUNDING = 1e-14
-"""A difference of floats this much smaller than they is rounding."""
 
 MOST_ANGLES = 4
 """Sines of longer sums are not taken apart."""
@@ -387,38 +383,6 @@ def unit(place: int, exponent: int = 1) -> int:
     return exponent << (BITS * place) if exponent >= 0 else -(-exponent << (BITS * place))
 
 
-def gather(terms: Terms, term: int, k: Number) -> None:
-    """Add a term to others; what is left of floats by rounding alone is nothing."""
-    old = terms.get(term)
-    if old is None:
-        if k:
-            terms[term] = k
-        return
-    new = old + k
-    if not new or (isinstance(new, float) and abs(new) <= ROUNDING * abs(float(old))):
-        del terms[term]
-    else:
-        terms[term] = new
-
-
 def frozen(x: Poly) -> Frozen:
     """A polynomial's terms in ascending order: equal ones are equal."""
     return tuple(sorted(x.terms.items()))
-
-
-def plain(x: Number) -> Number:
-    """A number as an int where it is one."""
-    if isinstance(x, float):
-        return int(x) if x.is_integer() and abs(x) < 1e15 else x
-    return int(x) if x == int(x) else x
-
-
-def near(k: Number) -> Number:
-    """A float that rounding has moved off a whole number, as that."""
-    whole = round(k)
-    return whole if isinstance(k, float) and whole and abs(k - whole) < 1e-12 * abs(k) else plain(k)
-
-
-def reciprocal(k: Number) -> Number:
-    """``1/k``, exact where k is."""
-    return 1 / k if isinstance(k, float) else plain(1 / Fraction(k))

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from linegraph.differentiation import Symbol
-    from linegraph.simplification.polynomial import Ring, Terms
+    from linegraph.simplification.numbers import Terms
+    from linegraph.simplification.polynomial import Ring
     from linegraph.sympy_walk import Expr
     from linegraph.vector import Scalar
 
