@@ -15,10 +15,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
-LARGEST_DENOMINATOR = 100
-"""What floats came to be by calculating exactly stays a fraction up to here."""
-
-
 def simplify(
     expression: Any,
     level: str = "full",
@@ -82,18 +78,27 @@ def quotient(expression: Any) -> Expr:
     if not whole.free_symbols:
         return whole
     inexact = whole.has(sympy.Float)
-    above, below = sympy.fraction(
-        sympy.cancel(sympy.nsimplify(whole, rational=True) if inexact else whole)
-    )
-    signs = [term.could_extract_minus_sign() for term in sympy.Add.make_args(below)]
-    scale = sympy.Integer(-1 if 2 * sum(signs) > len(signs) else 1)
+    exact = sympy.nsimplify(whole, rational=True) if inexact else whole
+    parts = [part.expand() for part in sympy.fraction(sympy.cancel(exact))]
+    scale = sympy.Integer(1)
     if inexact:  # numbers of the size that they had before denominators were cleared
-        scale /= max(abs(t.as_coeff_Mul()[0]) for t in sympy.Add.make_args(sympy.expand(below)))
-    parts = [simplify(sympy.expand(scale * part)) for part in (above, below)]
-    found = parts[0] / parts[1]
-    if not inexact:
-        return found
-    return found.replace(lambda e: e.is_Rational and e.q > LARGEST_DENOMINATOR, sympy.Float)
+        scale /= max(abs(k) for k, _ in _terms(parts[1]))
+    if 2 * sum(bool(k.is_negative) for k, _ in _terms(parts[1])) > len(_terms(parts[1])):
+        scale = -scale
+    above, below = (
+        sympy.Add(*(_decimal(scale * k, inexact) * term for k, term in _terms(part)))
+        for part in parts
+    )
+    return simplify(above) / simplify(below)
+
+
+def _terms(part: Expr) -> list[tuple[Expr, Expr]]:
+    """The numbers and the rests of a sum's terms."""
+    return [term.as_coeff_Mul() for term in sympy.Add.make_args(part)]
+
+
+def _decimal(k: Expr, inexact: bool) -> Expr:
+    return k if k.is_Integer or not inexact else sympy.Float(k)
 
 
 def _atoms(e: Expr, known: set[Expr]) -> set[Expr]:
