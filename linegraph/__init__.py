@@ -6,6 +6,8 @@ from linegraph.errors import LinegraphError, ModelError, NameRefused, SourceErro
 from linegraph.model import Model
 from linegraph.notation import init_printing
 from linegraph.parameters import Parameter
+from linegraph.reading import read
+from linegraph.tidy import simplify
 from linegraph.version import __version__
 
 __all__ = [
@@ -20,4 +22,6 @@ __all__ = [
     "derive",
     "emit",
     "init_printing",
+    "read",
+    "simplify",
 ]

@@ -334,38 +334,15 @@ def _read(
     source: str, base: str, locks: tuple[str, ...], parameters: str | None, snap: float
 ) -> Model:
     """Read a model file or a URDF, lock joints, report what is odd."""
-    if _is_urdf(source):
-        from linegraph import urdf
+    from linegraph.reading import read
 
-        model = urdf.read(source, base=base, symbolic=parameters == "symbolic", snap=snap)
-    else:
-        from linegraph import modelfile
-
-        if base == "floating":
-            raise LinegraphError(
-                "--base floating is for a URDF; in a model file connect the base to ground with a free "
-                'joint: [free.root] between = ["ground", "BODY"]'
-            )
-        model = modelfile.read(source, snap=snap)
+    model = read(source, base=base, symbolic=parameters == "symbolic", snap=snap)
     for lock in locks:
         joint, value = _assignment(lock, "--lock", 0.0)
         model.lock(joint, value)
     for warning in model.warnings:
         click.echo(f"{click.style('warning:', fg='yellow', bold=True)} {warning}", err=True)
     return model
-
-
-def _is_urdf(source: str) -> bool:
-    """By the name; where that does not tell, by what the file begins with."""
-    ending = source.lower().rpartition(".")[2]
-    if ending in ("toml", "json"):
-        return False
-    if ending in ("urdf", "xml", "xacro"):
-        return True
-    from linegraph.modelfile.document import read_bytes
-
-    start = read_bytes(source)[:1000].removeprefix(b"\xef\xbb\xbf").lstrip()
-    return start.startswith(b"<")
 
 
 def _assignment(text: str, option: str, default: float | None = None) -> tuple[str, float]:

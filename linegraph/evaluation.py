@@ -37,6 +37,7 @@ class Function:
         model: the name of the model.
         source: the Python it is from.
         module: the same, loaded.
+        single: whether what it computes is one number and no array.
     """
 
     name: str
@@ -44,7 +45,7 @@ class Function:
     model: str
     source: str
     module: Any
-    shape: tuple[int, ...] | None = None
+    single: bool = False
 
     def __call__(self, *given: Any, parameters: Mapping[str, float] | None = None) -> Any:
         """Call it with one state, or with many: arrays whose last axis is that of one.
@@ -61,7 +62,7 @@ class Function:
             raise ModelError(f'function "{self.name}"', problem)
         values = self._parameters(parameters or {})
         found = getattr(self.module, self.name)(*values, *given)
-        return found[..., 0] if self.shape == () else found
+        return found[..., 0] if self.single else found
 
     def _parameters(self, given: Mapping[str, float]) -> tuple[Any, ...]:
         own = getattr(self.module, "DEFAULT_PARAMETERS", None)
@@ -69,7 +70,9 @@ class Function:
         for name in given:
             if name not in known:
                 raise ModelError(f'parameter "{name}"', f"is not there; {nearest(name, known)}")
-        return () if own is None else (own.replace(**given),)
+        if own is None:
+            return ()
+        return (own.replace(**given) if given else own,)
 
     def __repr__(self) -> str:
         """Its name and arguments."""
@@ -105,30 +108,30 @@ def _of_expression(derivation: Derivation, name: str, what: Any) -> Function:
         for k, symbol in enumerate(names)
     }
     symbols |= {**functions.values, "t": dag.symbol("t")}
-    shape = tuple(whole.shape) if isinstance(whole, sympy.MatrixBase) else ()
+    single = not isinstance(whole, sympy.MatrixBase)
+    # a column is a vector to those who compute
+    shape = (1,) if single else tuple(n for k, n in enumerate(whole.shape) if k == 0 or n != 1)
     try:
-        entries = tuple(evaluate(e, dag, symbols) for e in (whole if shape else [whole]))
+        entries = tuple(evaluate(e, dag, symbols) for e in ([whole] if single else whole))
     except ModelError as error:
         problem = f"{error}; it is no symbol of this derivation" if error.thing else str(error)
         raise ModelError("expression", problem) from None
-    result = Result("values", shape or (1,), entries, "an expression of the model's symbols")
+    result = Result("values", shape, entries, "an expression of the model's symbols")
     given = tuple(argument for argument in functions.sizes if reads(argument, (result,)))
     program = functions.program(NAME, "An expression of the model's symbols.", given, (result,))
     state = (tree.positions, tree.velocities, tree.inputs)
     parameters = parameters_of(derivation)
     time = derivation.model.depends_on_time
     module = Module(name, (), *state, parameters, time, (program,))
-    return _loaded(derivation, module, NAME, shape)
+    return _loaded(derivation, module, NAME, single=single)
 
 
-def _loaded(
-    derivation: Derivation, module: Module, name: str, shape: tuple[int, ...] | None = None
-) -> Function:
+def _loaded(derivation: Derivation, module: Module, name: str, *, single: bool = False) -> Function:
     (source,) = codegen.render(module, "python").values()
     program = next(p for p in module.programs if p.name == name)
     arguments = tuple(a.name for a in program.arguments if a.name != "p")
     loaded = _Loader(source).loaded(module.name)
-    return Function(name, arguments, derivation.model.name, source, loaded, shape)
+    return Function(name, arguments, derivation.model.name, source, loaded, single)
 
 
 class _Loader(SourceLoader):

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from functools import cached_property
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from linegraph.derive import Derivation
+    from linegraph.drawing.scene import Scene
+    from linegraph.equation_list import Equations
     from linegraph.evaluation import Function
     from linegraph.state_space import StateSpace
     from linegraph.symbols import Symbolic
@@ -99,6 +102,14 @@ class Face:
     # -- equations
 
     @property
+    def p(self) -> SimpleNamespace:
+        """The parameters, symbols by their names: ``d.p.m``."""
+        from sympy import Symbol
+
+        names = self._derivation.model.parameters
+        return SimpleNamespace(**{name: Symbol(name) for name in names})
+
+    @property
     def mass_matrix(self) -> Expr:
         """M(q), symmetric, nv x nv."""
         return self.symbolic.mass_matrix
@@ -133,6 +144,31 @@ class Face:
         """The potential energy of weight and springs."""
         return self.symbolic.potential_energy
 
+    @property
+    def coordinate_rates(self) -> Expr:
+        """q̇ = N(q) v, a column."""
+        return self.symbolic.coordinate_rates
+
+    @property
+    def constraints(self) -> Expr:
+        """φ(q), a column: zero where all loops are closed."""
+        return self.symbolic.constraints
+
+    @property
+    def constraint_jacobian(self) -> Expr:
+        """J(q), constraints x velocities."""
+        return self.symbolic.constraint_jacobian
+
+    @property
+    def constraint_bias(self) -> Expr:
+        """γ of J v̇ = γ, a column."""
+        return self.symbolic.constraint_bias
+
+    @property
+    def multipliers(self) -> Expr:
+        """λ, a column of symbols."""
+        return self.symbolic.multipliers
+
     def reaction(self, joint: str) -> tuple[Expr, Expr]:
         """Force and torque that a joint or constraint exerts on its head, about the head's origin.
 
@@ -144,8 +180,11 @@ class Face:
         """
         return self.symbolic.reaction(joint)
 
-    def equations(self) -> list[Expr]:
-        """The equations of motion, a `sympy.Eq` for each velocity; then those of constraints."""
+    def equations(self) -> Equations:
+        """The equations of motion, a `sympy.Eq` for each velocity; then those of constraints.
+
+        They are a list, which notebooks show line by line.
+        """
         return self.symbolic.equations()
 
     def linearise(self, at: Mapping[Any, Any] | None = None) -> StateSpace:
@@ -195,3 +234,23 @@ class Face:
         from linegraph.evaluation import function
 
         return function(self._derivation, what)
+
+    # -- looks
+
+    def sketch(self, hold: Mapping[str, float] | None = None) -> Scene:
+        """The mechanism, drawn where its loops are closed.
+
+        Args:
+            hold: coordinates that keep the values given, by name.
+
+        Raises:
+            ModelError: there is nothing to draw, a parameter has no value, or no such position.
+        """
+        from linegraph.drawing.mechanism import mechanism_scene
+
+        return mechanism_scene(self._derivation, hold=hold)
+
+    def _repr_html_(self) -> str:
+        from linegraph.appearance import of_derivation
+
+        return of_derivation(self._derivation)

@@ -26,7 +26,7 @@ class Edge(NamedTuple):
     head: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class IntegerMatrix:
     """A matrix of exact integers with named rows and columns, stored by its non-zero entries.
 
@@ -85,6 +85,24 @@ class IntegerMatrix:
 
         return array(list(self), dtype=int).reshape(self.shape)
 
+    def __repr__(self) -> str:
+        """Its size."""
+        return f"<{self.shape[0]} x {self.shape[1]} matrix of integers; print it, or to_sympy()>"
+
+    def _repr_html_(self) -> str:
+        """The table a notebook shows, with names along both sides."""
+        from html import escape
+
+        def row(cells: Iterable[object], tag: str) -> str:
+            return "".join(f"<{tag}>{escape(str(cell))}</{tag}>" for cell in cells)
+
+        lines = [f"<tr><th></th>{row(self.columns, 'th')}</tr>"]
+        lines += [
+            f"<tr><th>{escape(name)}</th>{row((x or '·' for x in entries), 'td')}</tr>"
+            for name, entries in zip(self.rows, self, strict=True)
+        ]
+        return f"<table>{''.join(lines)}</table>"
+
     def __str__(self) -> str:
         """A table with names along both sides; zeros are dots."""
         table = [["", *self.columns]]
@@ -98,7 +116,7 @@ class IntegerMatrix:
         return "\n".join(lines)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Projection:
     """The system graph seen in one domain.
 
@@ -131,6 +149,10 @@ class Projection:
             graph.add_edge(edge.tail, edge.head, key=edge.name, component=edge.component)
         return graph
 
+    def __repr__(self) -> str:
+        """Its size."""
+        return f"<{self.domain}: {len(self.vertices)} vertices, {len(self.edges)} edges>"
+
     def _repr_svg_(self) -> str:
         """The picture a notebook shows."""
         from linegraph.drawing.pictures import projection_svg
@@ -138,7 +160,7 @@ class Projection:
         return projection_svg(self)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SystemGraph:
     """The united terminal graph: its projections on the domains, in the order these first appear."""
 
@@ -154,6 +176,10 @@ class SystemGraph:
     def domains(self) -> tuple[str, ...]:
         """The names of the domains present."""
         return tuple(projection.domain for projection in self.projections)
+
+    def __repr__(self) -> str:
+        """Its subspaces."""
+        return f"<system graph in {', '.join(self.domains)}>"
 
     def _repr_svg_(self) -> str:
         """The picture a notebook shows: all subspaces."""

@@ -168,12 +168,16 @@ class KinematicTree:
 
     def normalise(self, q: list[float]) -> None:
         """Give the quaternions among the coordinates length 1, in place."""
-        for link in self.links:
-            places = [freedom.index for freedom in link.place.positions]
-            if len(places) > len(link.velocities):
-                length = math.hypot(*(q[i] for i in places[-4:]))
-                for i in places[-4:]:
-                    q[i] /= length
+        for places in self.quaternions:
+            length = math.hypot(*(q[i] for i in places))
+            for i in places:
+                q[i] /= length
+
+    @property
+    def quaternions(self) -> list[tuple[int, ...]]:
+        """The places in q of the entries x, y, z, w of each unit quaternion."""
+        found = [(link, [freedom.index for freedom in link.place.positions]) for link in self.links]
+        return [tuple(places[-4:]) for link, places in found if len(places) > len(link.velocities)]
 
     def regrouped(self) -> KinematicTree:
         """The same M and h from fewer parameters: what a parent can carry is handed to it, leaf to root.

@@ -34,7 +34,7 @@ from linegraph.outputs import Output
 from linegraph.parameters import Input, Parameter, is_number, names_in
 from linegraph.terminals import system_graph, terminals_of
 from linegraph.vector import ZERO, Vector
-from linegraph.words import BodyHandle, Kind, Limit, Terminal, adds, applies, constrains
+from linegraph.words import BodyHandle, Kind, Limit, Shown, Terminal, adds, applies, constrains
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -47,7 +47,7 @@ SNAP = 1e-11
 Acting = TypeVar("Acting", Element, Load)
 
 
-class Model(Words):
+class Model(Shown, Words):
     """A system of components, connected at terminals.
 
     Args:

@@ -69,7 +69,7 @@ class Call:
     results: tuple[Argument, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Program:
     """One function: ``results = name(arguments)``.
 
@@ -93,6 +93,11 @@ class Program:
     status: bool = False
     handed: str = ""
     guarded: frozenset[int] = frozenset()
+
+    def __repr__(self) -> str:
+        """Its name, arguments and cost."""
+        arguments = ", ".join(argument.name for argument in self.arguments)
+        return f"<program {self.name}({arguments}): {self.operations} operations>"
 
     @property
     def operations(self) -> int:
@@ -147,7 +152,7 @@ class Listing:
     shown: bool = True
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Module:
     """All functions of one model and what their reader must know.
 
@@ -169,6 +174,10 @@ class Module:
     programs: tuple[Program | Routine, ...]
     listings: tuple[Listing, ...] = ()
     counts: tuple[tuple[str, int], ...] = ()
+
+    def __repr__(self) -> str:
+        """Its name and functions."""
+        return f"<module {self.name}: {', '.join(program.name for program in self.programs)}>"
 
 
 def assemble(

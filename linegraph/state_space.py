@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 Expr = Any
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class StateSpace:
     """A linear time-invariant system.
 
@@ -51,6 +51,21 @@ class StateSpace:
     E: Expr
     F: Expr
     defaults: Mapping[str, float]
+
+    def __repr__(self) -> str:
+        """Its names."""
+        names = (", ".join(part) for part in (self.states, self.inputs, self.outputs))
+        return "<linear system: states {}; inputs {}; outputs {}>".format(*names)
+
+    def _repr_latex_(self) -> str:
+        from linegraph.notation import Notation
+
+        look = Notation()
+        rates = f"{look.latex(self.A)} x + {look.latex(self.B)} u"
+        if any(entry != 0 for entry in self.E):
+            rates += rf" + {look.latex(self.E)} \dot u"
+        names = ", ".join(look.latex(sympy.Symbol(name)) for name in self.states)
+        return rf"$\displaystyle \dot x = {rates}, \quad x = ({names})$"
 
     @property
     def shifted(self) -> StateSpace:

@@ -11,12 +11,14 @@ from linegraph import orthogonality
 from linegraph.checks import nearest
 from linegraph.closure import Chords, equations
 from linegraph.coriolis import coriolis_matrix, gradient_along
+from linegraph.equation_list import Equations
 from linegraph.errors import ModelError
 from linegraph.expression import Dag
 from linegraph.inverse_scheme import InverseScheme
 from linegraph.linear import linearise, state_space_of
 from linegraph.loads import Applied, applied, efforts
 from linegraph.mass_matrix import mass_matrix
+from linegraph.notation import Notation
 from linegraph.observation import observed
 from linegraph.paper import PaperMatrices, paper_matrices
 from linegraph.paper_print import PrintedMatrices, printed_matrices
@@ -73,7 +75,8 @@ class Symbolic:
         self.dag = Dag()
         self._parameters = self._valued(self.dag)
         self.tree: KinematicTree = derivation.tree(self.dag, self._parameters)
-        self.simplifier = Simplifier(self._named, level, budget, progress)
+        units = [[("q", place) for place in unit] for unit in self.tree.quaternions]
+        self.simplifier = Simplifier(self._named, level, budget, progress, units)
         self.q, self.v, self.a, self.u, self.multipliers = map(
             self._column, ("q", "v", "a", "u", MULTIPLIERS)
         )
@@ -130,15 +133,19 @@ class Symbolic:
         active = orthogonality.generalised_forces(self.tree, self.dag, self._arms, acting)
         return self._closed_column("forces", efforts(self.tree, self.dag, self._chords, active))
 
-    def equations(self) -> list[Expr]:
-        """The equations of motion, row by row: ``M v̇ + h = Q + J^T λ``, and with constraints ``J v̇ = γ``."""
-        left = self.mass_matrix * self.a + self.bias
-        right = self.forces
-        if not self.tree.closed:
-            return _rows(left, right)
-        reactions = self.constraint_jacobian.T * self.multipliers
-        jacobian = self.constraint_jacobian * self.a
-        return _rows(left, right + reactions) + _rows(jacobian, self.constraint_bias)
+    def equations(self) -> Equations:
+        """The equations of motion, row by row: M v̇ + h = Q + J^T λ, and of constraints J v̇ = γ.
+
+        Rows of constraints that say nothing, 0 = 0, are left out.
+        """
+        left, right = self.mass_matrix * self.a + self.bias, self.forces
+        if self.tree.closed:
+            right += self.constraint_jacobian.T * self.multipliers
+            rows = zip(self.constraint_jacobian * self.a, self.constraint_bias, strict=True)
+            said = [row for row in rows if any(side != 0 for side in row)]
+            left = [*left, *(row[0] for row in said)]
+            right = [*right, *(row[1] for row in said)]
+        return Equations(left, right, Notation(self._derivation))
 
     @cached_property
     def coriolis_matrix(self) -> Expr:
@@ -356,7 +363,6 @@ class Symbolic:
         """All matrices of the paper in its own form of 2n - 1 chords, over sympy and not simplified."""
         return printed_matrices(self._sympy_tree, self._sympy, list(self.q), list(self.v))
 
-
-def _rows(left: Expr, right: Expr) -> list[Expr]:
-    """Equations, never evaluated to true or false."""
-    return [sympy.Eq(a, b, evaluate=False) for a, b in zip(left, right, strict=True)]
+    def __repr__(self) -> str:
+        """What it is of, and how far it is simplified."""
+        return f"<closed forms of {self._model.name}, level {self.simplifier.level}>"

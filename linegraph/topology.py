@@ -35,7 +35,7 @@ class Step(NamedTuple):
     forward: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Topology:
     """A projection of the system graph with a forest chosen in it.
 
@@ -114,6 +114,11 @@ class Topology:
             tuple(edge.name for edge in self.branches),
             tuple(rows),
         )
+
+    def __repr__(self) -> str:
+        """Its size."""
+        domain = self.projection.domain
+        return f"<tree in {domain}: {len(self.branches)} branches, {len(self.chords)} chords>"
 
     def _repr_svg_(self) -> str:
         """The picture a notebook shows."""

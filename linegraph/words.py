@@ -24,6 +24,23 @@ Kind = TypeVar("Kind", bound=Joint)
 Limit = TypeVar("Limit", bound="Constraint | Relation")
 
 
+class Shown:
+    """How a model looks to the one who builds it."""
+
+    name: str
+    bodies: dict[str, Any]
+    joints: Any
+
+    def __repr__(self) -> str:
+        """Its name and size."""
+        return f"<Model {self.name}: {len(self.bodies)} bodies, {len(self.joints)} joints>"
+
+    def _repr_html_(self) -> str:
+        from linegraph.appearance import of_model
+
+        return of_model(self)  # type: ignore[arg-type]
+
+
 @dataclass(frozen=True)
 class BodyHandle:
     """A body of a model under construction; stands for its own frame where a terminal is wanted."""

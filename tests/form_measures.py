@@ -157,8 +157,12 @@ def operations(*expressions: Expr) -> int:
 
 
 def whole_floats(expression: Expr) -> list[Expr]:
-    """Floats that are whole numbers, which a reader wants as such."""
-    return sorted((x for x in expression.atoms(sympy.Float) if float(x).is_integer()), key=str)
+    """Floats that are whole numbers, also but for rounding, which a reader wants as such."""
+    return sorted((x for x in expression.atoms(sympy.Float) if _whole(float(x))), key=str)
+
+
+def _whole(x: float) -> bool:
+    return abs(x - round(x)) <= 1e-14 * abs(x)
 
 
 def unmerged(expression: Expr) -> list[Expr]:

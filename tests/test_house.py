@@ -40,6 +40,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("differentiation", "residues"),
     ("coriolis", "sympy_walk"),
     ("simplification",),
+    ("tidy",),
     ("parameters", "program", "rotation", "topology"),
     ("checks", "constants", "elements"),
     ("body", "choices"),
@@ -62,17 +63,17 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("edges", "paper", "regularity", "united"),
     ("inverse_scheme", "paper_print", "assembly"),
     ("observation", "paper_inverse"),
-    ("linear", "symbol_names"),
+    ("equation_list", "linear", "symbol_names"),
     ("symbols",),
     ("dynamic", "numeric"),
     ("face",),
     ("derive",),
     ("drawing", "network_programs"),
     ("closed_programs", "edge_programs", "interpretation", "modelfile", "urdf"),
-    ("prologue", "shared"),
+    ("prologue", "reading", "shared"),
     ("programs",),
     ("codegen", "trees"),
-    ("evaluation",),
+    ("appearance", "evaluation"),
     ("checking", "cli_options", "emission", "report"),
     ("cli",),
     ("__main__",),
@@ -84,6 +85,8 @@ UPWARD = {
     ("assemblies", "kinematics"),
     # what one asks a derivation, the emitted code answers
     ("face", "evaluation"),
+    # ... and a picture, how it stands
+    ("face", "drawing"),
 }
 """Imports upwards, inside functions. The list is to shrink.
 
@@ -95,6 +98,7 @@ NO_PHYSICS = {"graph": {"errors"}, "topology": {"errors", "graph"}}
 CODEGEN_SEES = {f"linegraph.{name}" for name in ("errors", "expression", "functions", "program")}
 CLOSED_FORMS = (
     "dynamic",
+    "equation_list",
     "evaluation",
     "linear",
     "notation.printing",

@@ -131,7 +131,7 @@ class Box:
         )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Scene:
     """A picture.
 
@@ -146,6 +146,16 @@ class Scene:
     title: str
     about: str
     items: tuple[Item, ...]
+
+    def _repr_svg_(self) -> str:
+        """The picture a notebook shows."""
+        from linegraph.drawing.svg import svg_text
+
+        return svg_text(self)
+
+    def __repr__(self) -> str:
+        """What it shows, and its size."""
+        return f"<picture of {self.width} x {self.height}: {self.title}>"
 
     def parts(self) -> Iterator[Part]:
         """All parts, outer ones first."""

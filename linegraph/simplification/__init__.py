@@ -29,7 +29,7 @@ from linegraph.simplification.proof import EXACT, INEXACT, Point
 from linegraph.sympy_walk import to_sympy
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Sequence
 
     from linegraph.differentiation import Symbol
     from linegraph.simplification.polynomial import Terms
@@ -38,11 +38,17 @@ if TYPE_CHECKING:
 
 LEVELS = ("none", "fast", "full")
 
-BUDGET = 3_000_000
+BUDGET = 1_000_000
 """How many products of two terms a quantity may take: some seconds."""
+
+MOST_TERMS = 4000
+"""Longer polynomials are not written."""
 
 POINTS = 2
 """At how many points each form is compared."""
+
+SHORT = 60
+"""Of polynomials with more terms products of sines are not written as sums."""
 
 LONG = 400
 """Of polynomials with more terms one form is written and not several."""
@@ -56,6 +62,7 @@ class Simplifier:
         level: none, fast or full.
         budget: how many products of two terms a quantity may take.
         progress: told what is being done.
+        units: symbols of four that are the entries of a unit quaternion, x, y, z, w.
 
     Attributes:
         rejected: forms that differed from what was derived; empty unless there is a bug.
@@ -75,6 +82,7 @@ class Simplifier:
         level: str = "full",
         budget: int = BUDGET,
         progress: Callable[[str], None] | None = None,
+        units: Iterable[Sequence[Symbol]] = (),
     ) -> None:
         """Nothing is simplified yet; equal polynomials are written once."""
         if level not in LEVELS:
@@ -86,8 +94,11 @@ class Simplifier:
         self._symbol = symbol
         self._names: dict[Expr, Symbol] = {}
         self._ring = Ring()
+        units = [tuple(unit) for unit in units]
+        for unit in units:
+            self._ring.normalise(unit)
         self._replay = Replay(self._ring, self._ring.of_symbol)
-        self._points = [Point(self._ring, self._names, seed) for seed in range(POINTS)]
+        self._points = [Point(self._ring, self._names, seed, units) for seed in range(POINTS)]
         self._writer = Writer(self._ring, self._named, self._inner)
         self._written: dict[Any, Expr] = {}
 
@@ -125,6 +136,8 @@ class Simplifier:
         if self.level == "none":
             return to_sympy(x, self._symbol)
         terms = self._ring.poly(self._replay(x)).terms
+        if len(terms) > MOST_TERMS:
+            raise Swollen
         key = frozenset(terms.items())
         if key not in self._written:
             derived = [point.node(x) for point in self._points]
@@ -159,8 +172,10 @@ class Simplifier:
         forms = [terms, merged(self._ring, terms, doubled=False), merged(self._ring, terms)]
         with contextlib.suppress(Swollen):  # the search alone has become too long
             forms.append(fewest(self._ring, terms))
-            forms.append(spread(self._ring, terms))
-        return [form for n, form in enumerate(forms) if form not in forms[:n]]
+            if len(terms) <= SHORT:
+                forms.append(spread(self._ring, terms))
+        most = 2 * min(map(len, forms))
+        return [form for n, form in enumerate(forms) if form not in forms[:n] and len(form) <= most]
 
     def _inner(self, terms: Terms) -> Expr:
         """What stands inside a function, an angle or a root."""

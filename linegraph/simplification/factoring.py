@@ -27,6 +27,7 @@ from linegraph.simplification.polynomial import (
     Harmonic,
     Ring,
     Terms,
+    near,
     plain,
     reciprocal,
     unit,
@@ -98,7 +99,7 @@ class Writer:
             key = (outer, tuple((t, _rounded(x)) for t, x in sorted(rest.items())), bool(moving))
             first, members = shared.setdefault(key, (coefficient, {}))
             own = first[min(first)]
-            members[moving] = plain(coefficient[min(coefficient)] * reciprocal(own))
+            members[moving] = near(coefficient[min(coefficient)] * reciprocal(own))
         whole = sympy.Add(*(self._collected(*pair) for pair in shared.values()))
         return self.expanded({outside: 1}) * whole
 
@@ -113,10 +114,13 @@ class Writer:
         """One coefficient with all that it stands with."""
         if moving == {0: 1}:
             return self.nested(self.grouped(coefficient))
-        scale = _denominator(moving.values()) * _sign(moving.values(), coefficient.values())
-        rates = self.nested(self._terms({t: plain(k * scale) for t, k in moving.items()}))
-        outer = {t: plain(k * reciprocal(scale)) for t, k in coefficient.items()}
-        return self.nested(self.grouped(outer)) * rates
+        inside = _scale(moving.values()) * _sign(moving.values(), coefficient.values())
+        rates = self.nested(
+            self._terms({t: near(k * reciprocal(inside)) for t, k in moving.items()})
+        )
+        outside = _scale(coefficient.values()) if len(coefficient) > 1 else 1
+        inner = {t: near(k * reciprocal(outside)) for t, k in coefficient.items()}
+        return sympy.Mul(number(near(inside * outside)), self.nested(self.grouped(inner)), rates)
 
     def expanded(self, terms: Terms) -> Expr:
         """A plain sum."""
@@ -205,20 +209,23 @@ class Writer:
             common, rest = self.ring.primitive(inner, clear=False)
             ((shared, k),) = common.items()
             key = tuple((t, _rounded(x)) for t, x in sorted(rest.items()))
-            kernels.setdefault(key, []).append((varying, shared, rest, k))
+            kernels.setdefault(key, []).append((varying, shared, inner, k))
         found: list[Term] = []
         for members in kernels.values():
-            rest = members[0][2]
-            if len(rest) == 1 or (len(members) == 1 and members[0][0] == 0):
-                whole = [(t + v + o, x * k) for v, o, inner, k in members for t, x in inner.items()]
-                found += self._terms({t: plain(x) for t, x in whole})
+            first_varying, outer, inner, own = members[0]
+            if len(inner) == 1 or (len(members) == 1 and first_varying == 0):
+                found += self._terms(
+                    {t + v: x for v, _, terms, _ in members for t, x in terms.items()}
+                )
                 continue
-            scale = _denominator(rest.values()) * _sign(rest.values(), [m[3] for m in members])
-            whole_kernel = tuple((t, plain(x * scale)) for t, x in sorted(rest.items()))
-            kernel = Factor(-1, whole_kernel)
+            outside = [k * reciprocal(own) for _, _, _, k in members]
+            scale = _scale(inner.values()) * _sign(inner.values(), outside)
+            terms = {t - outer: near(x * reciprocal(scale)) for t, x in sorted(inner.items())}
+            kernel = Factor(-1, tuple(terms.items()))
             for varying, outer, _, k in members:
-                own = self._terms({varying + outer: plain(k * reciprocal(scale))})[0]
-                found.append(Term(own.coefficient, ((kernel, 1), *own.factors)))
+                times = near(k * reciprocal(own) * scale)
+                (own_term,) = self._terms({varying + outer: times})
+                found.append(Term(times, ((kernel, 1), *own_term.factors)))
         return found
 
     def nested(self, terms: Sequence[Term]) -> Expr:
@@ -331,19 +338,26 @@ def _irreducible(terms: Sequence[Term], factor: Factor) -> bool:
 def _content(terms: Sequence[Term]) -> Number:
     """A number that all coefficients are multiples of, negative if most of them are; 1 among floats."""
     numbers = [term.coefficient for term in terms]
+    return plain(_sign(numbers, ()) * _scale(numbers))
+
+
+def _scale(numbers: Iterable[Number]) -> Number:
+    """The largest number that all are whole multiples of; 1 among floats."""
+    numbers = list(numbers)
     if any(isinstance(k, float) for k in numbers):
         return 1
     below = _denominator(numbers)
     above = reduce(gcd, (abs(int(k * below)) for k in numbers))
-    return plain(_sign(numbers, ()) * Fraction(above, below))
+    return plain(Fraction(above, below))
 
 
 def _sign(inside: Iterable[Number], outside: Iterable[Number]) -> int:
     """The sign to take out of a sum, so that fewer signs are left before and in it."""
     inside, outside = list(inside), list(outside)
-    negative = sum(k < 0 for k in (*inside, *outside))
-    turned = len(inside) + len(outside) - negative
-    return -1 if turned < negative else 1
+    within, without = sum(k < 0 for k in inside), sum(k < 0 for k in outside)
+    turned_within, turned_without = len(inside) - within, len(outside) - without
+    turned = (turned_within + turned_without, turned_within)
+    return -1 if turned < (within + without, within) else 1
 
 
 def _divided(term: Term, k: Number, common: tuple[tuple[Factor, int], ...]) -> Term:

@@ -17,6 +17,8 @@ from linegraph.expression import Number
 from linegraph.functions import of_numbers
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from linegraph.differentiation import Symbol
 
 Terms: TypeAlias = dict[int, Number]
@@ -91,8 +93,7 @@ class Ring:
         self._bias = 0
         self._high = 0
         self._watched = 0
-        self._squares: list[tuple[int, int]] = []
-        self._replaced: dict[int, Terms] = {}
+        self._squares: list[tuple[int, int, Terms]] = []
         self._exponents: dict[int, tuple[tuple[int, int], ...]] = {}
 
     # -- generators
@@ -107,13 +108,24 @@ class Ring:
             self._bias |= ZERO_DIGIT << shift
             self._high |= 1 << (shift + BITS - 1)
             if kind in (COS, ROOT):
-                self._watched |= (ZERO_DIGIT - 2) << shift
-                self._replaced[place] = (
-                    {0: 1, unit(self.generator(SIN, content), 2): -1}
-                    if kind == COS
-                    else dict(content)
-                )
+                square: Terms = dict(content) if kind == ROOT else {0: 1}
+                if kind == COS:
+                    square[unit(self.generator(SIN, content), 2)] = -1
+                self.replace_square(place, square)
         return self._places[key]
+
+    def normalise(self, quaternion: Sequence[Symbol]) -> None:
+        """Write 1 - x^2 - y^2 - z^2 for w^2 of a unit quaternion (x, y, z, w)."""
+        *others, last = (self.generator(SYMBOL, symbol) for symbol in quaternion)
+        square: Terms = {unit(place, 2): -1 for place in others}
+        self.replace_square(last, {0: 1} | square)
+
+    def replace_square(self, place: int, square: Terms) -> None:
+        """From now on write other terms for the square of a generator."""
+        shift = BITS * place
+        mask = (ZERO_DIGIT - 2) << shift
+        self._watched |= mask
+        self._squares.append((mask, shift, square))
 
     def power(self, kind: str, content: Any, exponent: int = 1) -> Poly:
         """A generator to a power."""
@@ -269,16 +281,27 @@ class Ring:
         return found
 
     def reduced(self, term: int) -> Terms:
-        """A term with no square of a cosine or of a root left."""
-        biased = term + self._bias
-        if biased < 0 or biased & self._high:
-            raise Swollen
-        if not biased & self._watched:
-            return {term: 1}
-        for place, square in self._replaced.items():
-            if self.exponent(term, place) >= 2:
-                return self.product({term - unit(place, 2): 1}, square)
-        return {term: 1}  # a cosine or a root in a denominator
+        """A term with no square left that is something else: of a cosine, of a root.
+
+        Raises:
+            Swollen: an exponent is too large.
+        """
+        found: Terms = {}
+        pending: list[tuple[int, Number]] = [(term, 1)]
+        while pending:
+            term, k = pending.pop()
+            biased = term + self._bias
+            if biased < 0 or biased & self._high:
+                raise Swollen
+            for mask, shift, square in self._squares:
+                # an exponent below zero has these bits, too
+                if biased & mask and (biased >> shift & (2**BITS - 1)) >= ZERO_DIGIT + 2:
+                    rest = term - (2 << shift)
+                    pending += [(rest + t, k * x) for t, x in square.items()]
+                    break
+            else:
+                gather(found, term, k)
+        return found
 
     def quotient(self, p: Poly, q: Poly) -> Poly:
         """``p / q``; a sum in the denominator becomes a generator."""
@@ -388,6 +411,12 @@ def plain(x: Number) -> Number:
     if isinstance(x, float):
         return int(x) if x.is_integer() and abs(x) < 1e15 else x
     return int(x) if x == int(x) else x
+
+
+def near(k: Number) -> Number:
+    """A float that rounding has moved off a whole number, as that."""
+    whole = round(k)
+    return whole if isinstance(k, float) and whole and abs(k - whole) < 1e-12 * abs(k) else plain(k)
 
 
 def reciprocal(k: Number) -> Number:

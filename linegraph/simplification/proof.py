@@ -17,6 +17,8 @@ from linegraph.simplification.polynomial import COS, FUNCTION, ROOT, SIN, SYMBOL
 from linegraph.sympy_walk import OURS
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
     from linegraph.differentiation import Symbol
     from linegraph.simplification.polynomial import Ring, Terms
     from linegraph.sympy_walk import Expr
@@ -70,9 +72,16 @@ class Point:
         ring: whose terms are evaluated.
         names: a symbol of the ring by the sympy symbol it is written as; filled while writing.
         seed: of the values.
+        units: symbols whose values are those of a unit vector.
     """
 
-    def __init__(self, ring: Ring, names: dict[Expr, Symbol], seed: int) -> None:
+    def __init__(
+        self,
+        ring: Ring,
+        names: dict[Expr, Symbol],
+        seed: int,
+        units: Iterable[Sequence[Symbol]] = (),
+    ) -> None:
         """Values arise when they are asked for, each from its symbol's name alone."""
         self._ring = ring
         self._names = names
@@ -82,6 +91,10 @@ class Point:
         self._replay = Replay(self._algebra, self.value, self._algebra.context.convert)
         self._generators: dict[int, Any] = {}
         self._known: dict[Expr, Any] = {}
+        for unit in units:
+            entries = [self.value(symbol) for symbol in unit]
+            length = self._algebra.sqrt(sum(x * x for x in entries))
+            self._values |= {symbol: x / length for symbol, x in zip(unit, entries, strict=True)}
 
     def value(self, symbol: Symbol) -> Any:
         """A symbol's value."""
