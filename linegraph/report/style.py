@@ -56,7 +56,8 @@ footer { margin-top: 3rem; padding-top: 0.6rem; border-top: 1px solid var(--line
   font-size: 0.8rem; overflow-wrap: anywhere; }
 .many { columns: 19rem; column-gap: 1.5rem; }
 .many p { break-inside: avoid; }
-@media (max-width: 40rem) { td:has(code) { min-width: 7.5rem; } main { padding: 0.8rem 0.8rem 3rem; } .eqs { padding-left: 0; }
+@media (max-width: 40rem) { td:has(code) { min-width: 7.5rem; }
+  main { padding: 0.8rem 0.8rem 3rem; } .eqs { padding-left: 0; }
   h1 { font-size: 1.5rem; } }
 @page { size: A4; margin: 18mm 16mm; }
 @media print {
