@@ -37,6 +37,9 @@ if TYPE_CHECKING:
     from linegraph.notation.tree import Math
 
 MOST_COLUMNS = 28
+MANY = 12
+"""So many short formulas stand in columns."""
+
 SHORT = 44
 """A formula of so many characters stays in one piece."""
 
@@ -156,7 +159,9 @@ def _pieces(tree: Math) -> list[str]:
 
 
 def _formulas(rows: Sequence[Row]) -> Iterator[str]:
-    yield '<div class="eqs">'
+    longest = max((len(Plain()(row.left)) + len(Plain()(row.right)) for row in rows), default=0)
+    columns = len(rows) >= MANY and longest <= SHORT
+    yield f'<div class="eqs{" many" * columns}">'
     for row in rows:
         sign = f'<mo form="infix">{escape(row.sign)}</mo>'
         *before, last = _pieces(row.left)

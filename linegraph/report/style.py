@@ -46,7 +46,7 @@ table.matrix thead th span { writing-mode: vertical-rl; transform: rotate(180deg
 table.matrix tbody th { font-weight: normal; white-space: nowrap; padding-right: 0.7rem; }
 .sums p { margin: 0.15rem 0 0.15rem 1.2rem; text-indent: -1.2rem; font-size: 0.88rem; }
 .listing { font-size: 0.95rem; }
-.listing .label { margin: 0.9rem 0 0.1rem; font-style: italic; color: var(--soft); }
+.listing .label { break-after: avoid; margin: 0.9rem 0 0.1rem; font-style: italic; color: var(--soft); }
 .listing .eqs { margin: 0; padding-left: 0; columns: 21rem; column-gap: 1.5rem; }
 .listing .eqs p { break-inside: avoid; margin: 0.1rem 0; }
 figure { margin: 1rem 0; text-align: center; }
@@ -54,21 +54,33 @@ figure svg { max-width: 100%; height: auto; background: #ffffff; border-radius: 
 figcaption { color: var(--soft); font-size: 0.9rem; }
 footer { margin-top: 3rem; padding-top: 0.6rem; border-top: 1px solid var(--line); color: var(--soft);
   font-size: 0.8rem; overflow-wrap: anywhere; }
-@media (max-width: 40rem) { main { padding: 0.8rem 0.8rem 3rem; } .eqs { padding-left: 0; }
+.many { columns: 19rem; column-gap: 1.5rem; }
+.many p { break-inside: avoid; }
+@media (max-width: 40rem) { td:has(code) { min-width: 7.5rem; }
+  main { padding: 0.8rem 0.8rem 3rem; } .eqs { padding-left: 0; }
   h1 { font-size: 1.5rem; } }
 @page { size: A4; margin: 18mm 16mm; }
 @media print {
   :root { --ink: #000000; --soft: #444444; --line: #bbbbbb; --paper: #ffffff; --tint: #ffffff;
     --link: #000000; color-scheme: light; }
-  html { font-size: 10pt; }
+  html { font-size: 9.5pt; }
+  body { line-height: 1.4; }
+  h2 { margin-top: 1.6rem; }
+  th, td { padding: 0.08rem 0.7rem 0.08rem 0; }
+  table { line-height: 1.3; }
+  figure svg { max-height: 130mm; width: auto; }
+  .sums { columns: 2; }
+  .listing .eqs math { font-size: 0.9em; }
+  .eqs p { margin: 0.15rem 0; }
   main { max-width: none; padding: 0; }
   nav { border: 1px solid var(--line); }
   h2, h3 { break-after: avoid; }
   figure, tr { break-inside: avoid; }
   thead { display: table-header-group; }
   .eqs, .wide { overflow: visible; }
-  .eqs p { line-height: 1.6; }
-  .listing .eqs { columns: 2; }
+  .eqs p { line-height: 1.45; }
+  .listing .eqs { columns: 3; }
+  .many { columns: 2; }
   table.matrix td { min-width: 0; padding: 0.1rem 0.15rem; }
 }
 """
