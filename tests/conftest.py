@@ -14,3 +14,20 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         action="store_true",
         help="compare with Pinocchio on every URDF of the example-robot-data wheel, not on a few",
     )
+    parser.addoption(
+        "--all-forms",
+        action="store_true",
+        help="simplify the closed forms of every random system, not of a few",
+    )
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """Seeds of tests that are marked with them: a few, or all with ``--all-forms``.
+
+    What one seed is asked by different tests of a file is asked one after the other: it is derived once.
+    """
+    found = metafunc.definition.get_closest_marker("seeds")
+    if found is not None:
+        few, every = found.args
+        wanted = every if metafunc.config.getoption("--all-forms") else few
+        metafunc.parametrize("seed", wanted, scope="module")

@@ -28,6 +28,7 @@ class Drawn:
     Attributes:
         model: the model.
         values: of its parameters, also of those written as numbers.
+        driven: whether a joint has, or would have if drives were wanted, a prescribed motion.
     """
 
     def __init__(self, seed: int, *, symbolic: bool, elements: bool = True, drives: bool = True):
@@ -35,7 +36,7 @@ class Drawn:
         self.rng, self.symbolic = np.random.default_rng([seed, 7]), symbolic
         self.model = Model(f"readable{seed}")
         self.values: dict[str, float] = {}
-        self.elements, self.drives = elements, drives
+        self.elements, self.drives, self.driven = elements, drives, False
         self.model.gravity = (0, 0, -1 * self.value("g", 9.81))
         self.bodies: list[Any] = []
         self.single: list[str] = []
@@ -86,7 +87,9 @@ class Drawn:
             options["parts"] = (("revolute", self.axis()), ("prismatic", self.axis()))
         driven = self.rng.random() < 0.3
         if word in ("revolute", "prismatic"):
-            if driven and self.drives and not last:
+            driven = driven and not last
+            self.driven |= driven
+            if driven and self.drives:
                 w = self.value("w", 1.25)
                 options["motion"] = f"0.5*sin({'w' if self.symbolic else w}*t)"
             else:
