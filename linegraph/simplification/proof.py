@@ -146,7 +146,7 @@ class Point:
 
     def _of(self, e: Expr) -> Any:
         mpf = self._algebra.context.mpf
-        if e.is_Symbol:
+        if e in self._names:
             return self.value(self._names[e])
         if e.is_Rational:
             return mpf(e.p) / e.q
