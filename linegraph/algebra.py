@@ -2,8 +2,8 @@
 
 The same derivation runs over three algebras:
 
-    expression.Dag      nodes           programs to emit, costs to count
-    symbols.Sympy       sympy           closed forms for people
+    expression.Dag      nodes           programs to emit, costs to count, closed forms by `simplification`
+    sympy_walk.Sympy    sympy           the paper's own matrices, to be read as they are
     algebra.Floats      floats          the numeric reference
 
 Numbers belong to every algebra.
