@@ -21,7 +21,7 @@ from linegraph.functions import ARITY, of_numbers
 from linegraph.interpretation import run
 from linegraph.jets import Jet, Jets
 from linegraph.program import Argument, Module, Result, assemble
-from linegraph.symbols import Sympy, evaluate
+from linegraph.sympy_walk import Sympy, evaluate
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-SECONDS = 2
+SECONDS = 20  # of CPU, on any machine: what unfolds or searches takes minutes
 MEBIBYTES = 512
 
 LIMITED = f"""

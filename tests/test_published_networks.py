@@ -12,7 +12,7 @@ from published_networks import PUBLISHED, Published
 import linegraph as lg
 from linegraph import modelfile
 from linegraph.formula import parse
-from linegraph.symbols import Sympy
+from linegraph.sympy_walk import Sympy
 
 LINEAR = [system for system in PUBLISHED if not system.rates]
 
