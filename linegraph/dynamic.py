@@ -43,7 +43,7 @@ def to_static(symbolic: Symbolic, expression: Expr) -> Expr:
 
 def _whole(expression: Expr) -> Expr:
     if isinstance(expression, (list, tuple)):
-        return sympy.Tuple(*expression)
+        return sympy.Tuple(*map(_whole, expression))
     found = sympy.sympify(expression, strict=True)
     return found.as_immutable() if isinstance(found, sympy.MatrixBase) else found
 

@@ -12,6 +12,7 @@ from linegraph.notation.expressions import number
 from linegraph.notation.names import shaped
 from linegraph.notation.tree import ZERO, Listed, Math, Name, total
 from linegraph.parameters import resolver
+from linegraph.simplification.numbers import plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -100,8 +101,15 @@ class Subject:
         """A sympy expression, parameters as numbers where that is asked for."""
         if not self.folded:
             return expression
-        given = self.model.parameters.items()
-        return expression.subs({name: p.value for name, p in given if p.value is not None})
+        return expression.xreplace(self._numbers)
+
+    @cached_property
+    def _numbers(self) -> dict[Any, Any]:
+        """The values of independent parameters; a name stands for its symbol and for nothing else."""
+        from sympy import Symbol, sympify
+
+        own = (p for p in self.model.parameters.values() if p.value is not None and not p.derived)
+        return {Symbol(p.name): sympify(plain(p.value), strict=True) for p in own}
 
     def vector(self, values: Iterable[Any]) -> Math:
         """Components in brackets; 0 where all are."""

@@ -51,7 +51,8 @@ def conventions(subject: Subject, rounded: bool) -> Section:
         rates = Relation(letter("q", dots=1), "=", Product((letter("N"), letter("v"))))
         text += [", and ", rates]
     text += [
-        ". A dot is a derivative by time; vectors and matrices are bold; units are those of the SI."
+        ". A dot, in plain text a prime, is a derivative by time; vectors and matrices are bold; "
+        "units are those of the SI."
     ]
     blocks: list[Block] = [said(*text)]
     signs = (
