@@ -129,6 +129,18 @@ EMIT: tuple[Option, ...] = (
 )
 """What `emit` takes besides."""
 
+
+def output(endings: str) -> Option:
+    """The file that a command writes."""
+    return click.option(
+        "-o",
+        "--output",
+        metavar="FILE",
+        type=click.Path(dir_okay=False, path_type=str),
+        help=f"The file to write: {endings}",
+    )
+
+
 WHAT = ("graph", "sketch", "both")
 
 SET: Option = click.option(
@@ -141,13 +153,7 @@ SET: Option = click.option(
 """Where a mechanism is to stand."""
 
 GRAPH: tuple[Option, ...] = (
-    click.option(
-        "-o",
-        "--output",
-        metavar="FILE",
-        type=click.Path(dir_okay=False, path_type=str),
-        help="The file to write: .svg, .png or .dot, for Graphviz.  [default: SVG to standard output]",
-    ),
+    output(".svg, .png or .dot, for Graphviz.  [default: SVG to standard output]"),
     click.option(
         "--subspace",
         "subspaces",
@@ -172,13 +178,7 @@ DERIVE: tuple[Option, ...] = (
         type=click.Choice(["text", "markdown", "latex", "html"]),
         help="What to write.  [default: as the ending of FILE says (.txt, .md, .tex, .html), else text]",
     ),
-    click.option(
-        "-o",
-        "--output",
-        metavar="FILE",
-        type=click.Path(dir_okay=False, path_type=str),
-        help="The file to write; without it the report goes to standard output.",
-    ),
+    output(".txt, .md, .tex or .html.  [default: to standard output]"),
     click.option(
         "--level",
         type=click.Choice(["none", "fast", "full"]),

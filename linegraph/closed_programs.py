@@ -322,11 +322,7 @@ def _routine(
 
 def _quaternions(f: Functions) -> tuple[int, ...]:
     """Where quaternions begin in q."""
-    return tuple(
-        link.place.positions[-4].index
-        for link in f.tree.links
-        if len(link.place.positions) > len(link.velocities)
-    )
+    return tuple(places[0] for places in f.tree.quaternions)
 
 
 def _positions(f: Functions) -> int:

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import pytest
+import sympy
+
 import linegraph as lg
 from linegraph.modelfile import parse
-from linegraph.report import report
+from linegraph.report import FORMATS, report
 
+EXAMPLES = Path(__file__).parent.parent / "examples"
 MODEL = """
 name = "named"
 [parameters]
@@ -29,9 +35,25 @@ def test_names_that_sympy_knows_are_parameters_all_the_same() -> None:
 
 
 def test_dynamic_takes_no_text() -> None:
-    import pytest
-    import sympy
-
     derivation = lg.derive(parse(MODEL.encode(), "m.toml"))
     with pytest.raises(sympy.SympifyError):
         derivation.dynamic(["1+1"])
+
+
+@pytest.mark.parametrize("name", ["magnetic_levitation", "moving_support_pendulum"])
+def test_sympy_parses_no_text_of_a_file(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its parser runs what it reads; formulas of files go through our own."""
+
+    def refuse(text: str, *_: object, **__: object) -> None:
+        raise AssertionError(f"parsed by sympy: {text!r}")
+
+    monkeypatch.setattr("sympy.parsing.sympy_parser.parse_expr", refuse)
+    for model in (lg.read(EXAMPLES / name / f"{name}.toml"), parse(MODEL.encode(), "m.toml")):
+        derivation = lg.derive(model)
+        for folded in (False, True):
+            for kind in FORMATS if model.source is None else ("html",):
+                assert report(derivation, kind, folded=folded)
+        assert derivation._repr_html_()
+        assert derivation.equations()
+        assert derivation.function("bias")
+        assert derivation.function(derivation.mass_matrix)

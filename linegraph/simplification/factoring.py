@@ -11,7 +11,7 @@ is written as one.
 from __future__ import annotations
 
 from fractions import Fraction
-from functools import cached_property, reduce
+from functools import reduce
 from math import gcd
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -80,6 +80,7 @@ class Writer:
         self._symbol = symbol
         self._inner = inner or self.written
         self._known: dict[int, Expr] = {}
+        self._constants: dict[int, bool] = {}
 
     def written(self, terms: Terms) -> Expr:
         """Collected and factored, the parameters that all terms share before all."""
@@ -154,10 +155,6 @@ class Writer:
         if factor.kernel:
             return self.nested(self._terms(dict(factor.kernel)))
         return self.generator(factor.place)
-
-    @cached_property
-    def _constants(self) -> dict[int, bool]:
-        return {}
 
     def constant(self, place: int) -> bool:
         """Whether a generator depends on parameters alone."""
