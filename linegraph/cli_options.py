@@ -31,8 +31,24 @@ FUNCTIONS = (
     "drives",
     "power",
     "outputs",
+    "linearize",
+    "inverse_dynamics_derivatives",
+    "forward_dynamics_derivatives",
+    "inverse_dynamics_parameter_derivatives",
+    "forward_dynamics_parameter_derivatives",
 )
 """What functions `emit` can be asked for."""
+
+
+FURTHER = {
+    "power": "the audit of through times across over all edges",
+    "linearize": "A and B of x' = f(x, u) at any state",
+    "inverse_dynamics_derivatives": "of tau by q, v and a",
+    "forward_dynamics_derivatives": "of a by q, v and u",
+    "inverse_dynamics_parameter_derivatives": "of tau by the parameters",
+    "forward_dynamics_parameter_derivatives": "of a by the parameters",
+}
+"""What `emit` writes only where it is asked for."""
 
 
 def with_options(options: tuple[Option, ...]) -> Option:
@@ -93,9 +109,11 @@ EMIT: tuple[Option, ...] = (
     click.option(
         "--with",
         "functions",
-        type=click.Choice(["power"]),
+        type=click.Choice(tuple(FURTHER)),
+        metavar="FUNCTION",
         multiple=True,
-        help="Further functions to write: power, the audit of through times across over all edges.",
+        help="A further function to write; repeatable. "
+        f"{'; '.join(f'{name}: {what}' for name, what in FURTHER.items())}.",
     ),
     click.option(
         "--only",

@@ -37,10 +37,22 @@ class Calculus:
         True
     """
 
-    def __init__(self, dag: Dag, constants: Collection[str] = ()) -> None:
-        """Nothing is known yet; symbols of the arguments `constants` are numbers to it."""
+    def __init__(
+        self,
+        dag: Dag,
+        constants: Collection[str] = (),
+        chain: Mapping[Symbol, Gradient] | None = None,
+    ) -> None:
+        """Nothing is known yet.
+
+        Args:
+            dag: whose nodes are differentiated.
+            constants: arguments whose symbols are numbers to it.
+            chain: the derivatives of symbols that are not independent, by those that are.
+        """
         self.dag = dag
         self._constants = constants
+        self._chain = chain or {}
         self._gradients: dict[int, Gradient] = {}
         self._supports: dict[int, frozenset[Symbol]] = {}
 
@@ -75,7 +87,8 @@ class Calculus:
 
     def _of(self, node: Node) -> Gradient:
         if node.op == SYMBOL:
-            return {} if node.a in self._constants else {(node.a, node.b): 1}
+            symbol = (node.a, node.b)
+            return {} if node.a in self._constants else dict(self._chain.get(symbol, {symbol: 1}))
         found: Gradient = {}
         for operand, factor in zip(operands(node), self._partials(node), strict=True):
             for symbol, slope in self._gradients[operand.index].items():

@@ -26,6 +26,68 @@ class Solution(NamedTuple):
     pivots: list[Scalar]
 
 
+class Factors(NamedTuple):
+    """``M = L^T D L`` of a symmetric matrix.
+
+    Attributes:
+        pivots: the diagonal of D, by coordinate.
+        inverses: theirs.
+        below: the entries of each row of L beside its diagonal of ones.
+        outward: the coordinates from the root to the leaves.
+    """
+
+    pivots: list[Scalar]
+    inverses: list[Scalar]
+    below: list[dict[int, Scalar]]
+    outward: Sequence[int]
+
+    def solve(self, right: Sequence[Scalar], until: int | None = None) -> list[Scalar]:
+        """X of ``M x = r``; of the coordinates outward beyond `until` nothing that is of use."""
+        x = list(right)
+        for k in reversed(self.outward):
+            if x[k] != 0:
+                for i, entry in self.below[k].items():
+                    x[i] = x[i] - entry * x[k]
+                x[k] = x[k] * self.inverses[k]
+        for k in self.outward:
+            for i, entry in self.below[k].items():
+                x[k] = x[k] - entry * x[i]
+            if k == until:
+                break
+        return x
+
+    def inverse(self) -> list[list[Scalar]]:
+        """``M^-1``, of which each pair of equal entries is computed once."""
+        size = len(self.pivots)
+        rows: list[list[Scalar]] = [[0] * size for _ in range(size)]
+        for place, k in enumerate(self.outward):
+            column = self.solve([int(i == k) for i in range(size)], until=k)
+            for i in self.outward[: place + 1]:
+                rows[i][k] = rows[k][i] = column[i]
+        return rows
+
+
+def factored(rows: Sequence[Sequence[Scalar]], outward: Sequence[int]) -> Factors:
+    """Eliminate a symmetric M, of which one triangle is read, from the leaves to the root."""
+    size = len(rows)
+    m = [list(row) for row in rows]
+    pivots: list[Scalar] = [0] * size
+    inverses: list[Scalar] = [0] * size
+    below: list[dict[int, Scalar]] = [{} for _ in range(size)]
+    for place in reversed(range(size)):
+        k = outward[place]
+        pivots[k] = m[k][k]
+        inverses[k] = 1 / pivots[k]
+        inner = [i for i in outward[:place] if m[k][i] != 0]
+        for i in inner:
+            below[k][i] = m[k][i] * inverses[k]
+        for n, i in enumerate(inner):
+            for j in inner[: n + 1]:
+                m[i][j] = m[i][j] - below[k][i] * m[k][j]
+                m[j][i] = m[i][j]
+    return Factors(pivots, inverses, below, outward)
+
+
 def solve(
     rows: Sequence[Sequence[Scalar]],
     right: Sequence[Scalar],
@@ -41,40 +103,32 @@ def solve(
         outward: the coordinates in an order from the root to the leaves.
         symmetric: whether M is; otherwise it is factored by ``M = U D L`` with the same pivots.
     """
-    if not symmetric:
-        return _general(rows, right, outward)
-    size = len(right)
-    m = [list(row) for row in rows]
-    x = list(right)
-    pivots: list[Scalar] = [0] * size
-    factor: list[dict[int, Scalar]] = [{} for _ in range(size)]
-    for place in reversed(range(size)):
-        k = outward[place]
-        pivots[k] = m[k][k]
-        inverse = 1 / pivots[k]
-        inner = [i for i in outward[:place] if m[k][i] != 0]
-        for i in inner:
-            factor[k][i] = m[k][i] * inverse
-        for n, i in enumerate(inner):
-            for j in inner[: n + 1]:
-                m[i][j] = m[i][j] - factor[k][i] * m[k][j]
-                m[j][i] = m[i][j]
-            x[i] = x[i] - factor[k][i] * x[k]
-        x[k] = x[k] * inverse
-    for k in outward:
-        for i, entry in factor[k].items():
-            x[k] = x[k] - entry * x[i]
+    (x,), pivots = solve_many(rows, [right], outward, symmetric=symmetric)
     return Solution(x, pivots)
 
 
+def solve_many(
+    rows: Sequence[Sequence[Scalar]],
+    rights: Sequence[Sequence[Scalar]],
+    outward: Sequence[int],
+    *,
+    symmetric: bool = True,
+) -> tuple[list[list[Scalar]], list[Scalar]]:
+    """The same for several right-hand sides: the solutions, and the pivots."""
+    if symmetric:
+        factors = factored(rows, outward)
+        return [factors.solve(right) for right in rights], factors.pivots
+    return _general(rows, rights, outward)
+
+
 def _general(
-    rows: Sequence[Sequence[Scalar]], right: Sequence[Scalar], outward: Sequence[int]
-) -> Solution:
+    rows: Sequence[Sequence[Scalar]], rights: Sequence[Sequence[Scalar]], outward: Sequence[int]
+) -> tuple[list[list[Scalar]], list[Scalar]]:
     """The same for a matrix that is not symmetric."""
     m = [list(row) for row in rows]
-    x = list(right)
-    pivots: list[Scalar] = [0] * len(x)
-    for place in reversed(range(len(x))):
+    found = [list(right) for right in rights]
+    pivots: list[Scalar] = [0] * len(m)
+    for place in reversed(range(len(m))):
         k = outward[place]
         pivots[k] = m[k][k]
         inverse = 1 / pivots[k]
@@ -85,13 +139,15 @@ def _general(
             for j in outward[:place]:
                 if m[k][j] != 0:
                     m[i][j] = m[i][j] - factor * m[k][j]
-            x[i] = x[i] - factor * x[k]
+            for x in found:
+                x[i] = x[i] - factor * x[k]
     for place, k in enumerate(outward):
-        for j in outward[:place]:
-            if m[k][j] != 0:
-                x[k] = x[k] - m[k][j] * x[j]
-        x[k] = x[k] / pivots[k]
-    return Solution(x, pivots)
+        for x in found:
+            for j in outward[:place]:
+                if m[k][j] != 0:
+                    x[k] = x[k] - m[k][j] * x[j]
+            x[k] = x[k] / pivots[k]
+    return found, pivots
 
 
 def singular(rows: Sequence[Sequence[float]], *, symmetric: bool) -> int | None:

@@ -5,15 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from linegraph import closed_programs, edge_programs, network_programs, orthogonality
+from linegraph import (
+    closed_programs,
+    derivative_programs,
+    edge_programs,
+    network_programs,
+    orthogonality,
+    pivots,
+)
 from linegraph.articulated import forward_dynamics
 from linegraph.errors import ModelError
-from linegraph.expression import Node
 from linegraph.factorization import Solution, solve
 from linegraph.program import (
     Argument,
     Call,
-    Check,
     Module,
     Program,
     Quantity,
@@ -21,9 +26,8 @@ from linegraph.program import (
     Routine,
 )
 from linegraph.prologue import COUNT, with_prologue
-from linegraph.regularity import SINGULAR, is_solid, sample_tree
+from linegraph.regularity import is_solid, sample_tree
 from linegraph.shared import ARGUMENTS, Functions
-from linegraph.united import united_inverse_dynamics
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -92,6 +96,7 @@ def module_of(
         counts=(
             *(closed_programs.counts(functions) if tree.closed else ()),
             *([(COUNT, constants)] if constants else []),
+            *derivative_programs.counts(functions, chosen),
         ),
     )
 
@@ -135,8 +140,7 @@ def _equations(f: Functions) -> Program:
 
 
 def _inverse_dynamics(f: Functions) -> Program:
-    a = f.symbols("a")
-    tau = united_inverse_dynamics(f.short, f.dag, f.crossed, f.entries, a, f.rehoused(f.passive))
+    tau = f.inverse_dynamics
     result = Result("tau", (len(tau),), tuple(tau), "generalised forces along v")
     about = "Inverse dynamics tau = M(q) a + h(q, v), without forming M."
     return f.program("inverse_dynamics", about, ("q", "v", "a"), (result,))
@@ -173,7 +177,7 @@ def _articulated(f: Functions) -> Program:
         [*solution.pivots[:first], *beside.pivots],
     )
     bounds: list[Scalar] = [0] * first
-    bounds += [_bound(pivot, rows[k][k]) for k, pivot in enumerate(beside.pivots)]
+    bounds += [pivots.bound(pivot, rows[k][k]) for k, pivot in enumerate(beside.pivots)]
     return _solved(f, whole, bounds, ())
 
 
@@ -195,14 +199,9 @@ def _factored(f: Functions) -> Program:
     local = (Argument("M", size * size, "mass matrix"), Argument("h", size, "bias vector"))
     called = _equations(f) if f.affine else _mass_matrix(f)
     names = tuple(argument.name for argument in called.arguments)
-    bounds = [_bound(pivot, rows[i][i]) for i, pivot in enumerate(solution.pivots)]
+    bounds = [pivots.bound(pivot, rows[i][i]) for i, pivot in enumerate(solution.pivots)]
     call = Call(called.name, names, local[: len(called.results)])
     return _solved(f, solution, bounds, (call,))
-
-
-def _bound(pivot: Scalar, entry: Scalar) -> Scalar:
-    """What a pivot must exceed: rounding of what it was made of, or zero if it was not made of anything."""
-    return 0 if pivot is entry else SINGULAR * entry
 
 
 def _factored_cost(f: Functions) -> int:
@@ -218,20 +217,12 @@ def _factored_cost(f: Functions) -> int:
 def _solved(
     f: Functions, solution: Solution, bounds: list[Scalar], calls: tuple[Call, ...]
 ) -> Program:
-    first = f.tree.layout.mechanical
-    checks = []
-    for i, (pivot, bound) in enumerate(zip(solution.pivots, bounds, strict=True)):
-        # what a network stores may be negative, behind an op-amp say; inertia may not
-        size = pivot if i < first else f.dag.function("abs", pivot)
-        if isinstance(size, Node):
-            about = f"the mass matrix is singular at {f.tree.velocities[i].name}"
-            checks.append(Check(size, bound if i < first else 0, i + 1, about))
     accelerations = tuple(solution.unknowns)
     result = Result("a", (len(accelerations),), accelerations, ARGUMENTS["a"])
     about = "Forward dynamics a = M(q)^-1 (Q(u) - h(q, v))."
     given = ("q", "v", "u")
-    checks += network_programs.checks(f)
-    return f.program("forward_dynamics", about, given, (result,), tuple(checks), calls, status=True)
+    checks = pivots.checks(f, solution.pivots, bounds) + network_programs.checks(f)
+    return f.program("forward_dynamics", about, given, (result,), checks, calls, status=True)
 
 
 def _coordinate_rates(f: Functions) -> Program:
@@ -279,10 +270,22 @@ PROGRAMS: dict[str, Maker] = {
     "drives": edge_programs.drives,
     "power": edge_programs.power,
     "outputs": edge_programs.outputs,
+    "linearize": derivative_programs.linearize,
+    "inverse_dynamics_derivatives": derivative_programs.inverse_dynamics,
+    "forward_dynamics_derivatives": derivative_programs.forward_dynamics,
+    "inverse_dynamics_parameter_derivatives": derivative_programs.inverse_dynamics_by_parameters,
+    "forward_dynamics_parameter_derivatives": derivative_programs.forward_dynamics_by_parameters,
 }
 """The register of emitted functions, in emitted order: what a user may ask for, and what makes them."""
 
-ON_REQUEST = ("power",)
+ON_REQUEST = (
+    "power",
+    "linearize",
+    "inverse_dynamics_derivatives",
+    "forward_dynamics_derivatives",
+    "inverse_dynamics_parameter_derivatives",
+    "forward_dynamics_parameter_derivatives",
+)
 """Emitted only where they are asked for."""
 
 

@@ -25,7 +25,12 @@ from linegraph.program import (
     reads,
 )
 from linegraph.scope import relations
-from linegraph.united import exchange_at, network_entries, united_mass_matrix
+from linegraph.united import (
+    exchange_at,
+    network_entries,
+    united_inverse_dynamics,
+    united_mass_matrix,
+)
 from linegraph.working_frames import shortened
 
 if TYPE_CHECKING:
@@ -168,6 +173,22 @@ class Functions:
         )
 
     @cached_property
+    def inverse_dynamics(self) -> list[Scalar]:
+        """``M a + h`` for accelerations as symbols, without M."""
+        return self._required(self.passive)
+
+    @cached_property
+    def required(self) -> list[Scalar]:
+        """``M a`` and what acts at v̇ = 0, `carried`: what `driving` is to be equal to."""
+        return self.inverse_dynamics if self.affine else self._required(self.carried)
+
+    def _required(self, acting: Applied) -> list[Scalar]:
+        a = self.symbols("a")
+        return united_inverse_dynamics(
+            self.short, self.dag, self.crossed, self.entries, a, self.rehoused(acting)
+        )
+
+    @cached_property
     def arms(self) -> list[orthogonality.Arm]:
         """The joints' motions at (q, v), in the frames of the walk."""
         return orthogonality.arms(self.tree, self.dag, self.q, self.v)
@@ -190,9 +211,14 @@ class Functions:
     @cached_property
     def mass_matrix(self) -> Result:
         """M as a result."""
-        rows = united_mass_matrix(self.short, self.dag, self.crossed, self.entries)
+        rows = self.mass_rows
         entries = tuple(entry for row in rows for entry in row)
         return Result("M", (len(rows), len(rows)), entries, "mass matrix, both triangles")
+
+    @cached_property
+    def mass_rows(self) -> list[list[Scalar]]:
+        """M."""
+        return united_mass_matrix(self.short, self.dag, self.crossed, self.entries)
 
     @cached_property
     def exchange(self) -> Exchange | None:

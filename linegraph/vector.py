@@ -47,6 +47,12 @@ def cross(a: Vector, b: Vector) -> Vector:
     )
 
 
+def skew(a: Vector) -> Matrix:
+    """``[a x]``: the matrix whose product with b is a x b."""
+    x, y, z = a
+    return ((0, -z, y), (z, 0, -x), (-y, x, 0))
+
+
 def combine(coefficients: tuple[Scalar, ...], vectors: tuple[Vector, ...]) -> Vector:
     """``sum_i c_i a_i``."""
     total = ZERO

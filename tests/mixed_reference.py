@@ -90,10 +90,19 @@ def _side(x: Array) -> Array:
     return np.sign(np.real(x))
 
 
+def _atan2(y: Array, x: Array) -> Array:
+    """Of complex steps, too: the slope times the step."""
+    angle = np.arctan2(np.real(y), np.real(x))
+    if not (np.iscomplexobj(y) or np.iscomplexobj(x)):
+        return angle
+    across = np.real(x) * np.imag(y) - np.real(y) * np.imag(x)
+    return angle + 1j * across / (np.real(x) ** 2 + np.real(y) ** 2)
+
+
 FUNCTIONS: dict[str, Callable[..., Array]] = {
     **{name: getattr(np, name) for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp")},
     **{"log": np.log, "sqrt": np.sqrt, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan},
-    "atan2": np.arctan2,
+    "atan2": _atan2,
     "abs": lambda x: x * _side(x),
     "sign": _side,
     "min": lambda x, y: np.where(np.real(x) < np.real(y), x, y),

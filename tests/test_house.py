@@ -71,6 +71,8 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("drawing", "network_programs"),
     ("closed_programs", "edge_programs", "interpretation", "modelfile", "urdf"),
     ("prologue", "reading", "shared"),
+    ("loop_slopes", "pivots", "tangent"),
+    ("derivative_programs",),
     ("programs",),
     ("codegen", "trees"),
     ("appearance", "evaluation"),

@@ -4,7 +4,7 @@ A joint is an oriented edge from a *tail* frame to a *head* frame, in translatio
 across variables are the motion of the head relative to the tail; its coordinates q and velocities v are
 what it leaves free of it. All types answer the same questions in the same order:
 
-    positions   velocities   rest   resolved   alignment   motion   sequence   rates   regroup
+    positions   velocities   rest   resolved   alignment   motion   sequence   rates   adjoint   regroup
     restricted   measured   duals
 
 The last three say what a joint is as a *chord*, one that closes a loop: what it forbids, and what its
@@ -258,6 +258,14 @@ class Joint:
     ) -> tuple[Scalar, ...]:
         """``q̇ = N(q) v``."""
         return v
+
+    def adjoint(self, v: tuple[Scalar, ...]) -> tuple[tuple[Scalar, ...], ...]:
+        """``ad v``: how a small displacement d along the velocities goes on, ``d' = dv - (ad v) d``.
+
+        Zero where v is the derivative of q. Source: Lie brackets of the columns of N; Sola, Deray & Atchuthan
+        2018, "A micro Lie theory for state estimation in robotics".
+        """
+        return ((0,) * len(v),) * len(v)
 
     def regroup(self, head: Moments) -> tuple[Moments, Moments]:
         """Split the head body's moments into (kept, handed to the tail body) with the same M and h."""

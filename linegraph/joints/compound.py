@@ -136,6 +136,16 @@ class Compound(Joint):
             for rate in part.rates(algebra, at, rates)
         )
 
+    def adjoint(self, v: tuple[Scalar, ...]) -> tuple[tuple[Scalar, ...], ...]:
+        """Those of the parts, one after the other on the diagonal."""
+        rows: list[tuple[Scalar, ...]] = []
+        for part in self._joints:
+            first = len(rows)
+            beyond = len(v) - first - part.freedoms
+            for row in part.adjoint(v[first : first + part.freedoms]):
+                rows.append((*(0,) * first, *row, *(0,) * beyond))
+        return tuple(rows)
+
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
         """Raises `ModelError`: what it leaves free depends on how its parts stand."""
         problem = (

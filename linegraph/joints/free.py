@@ -11,7 +11,7 @@ from linegraph.joints.prismatic import Prismatic
 from linegraph.joints.spherical import Spherical
 from linegraph.program import Quantity
 from linegraph.rotation import IDENTITY_MATRIX, Rotation
-from linegraph.vector import ZERO, Scalar
+from linegraph.vector import ZERO, Scalar, skew
 
 if TYPE_CHECKING:
     from linegraph.algebra import Algebra
@@ -102,6 +102,14 @@ class Free(Joint):
         turn = self._ball.motion(algebra, q[3:], v[3:])
         linear = turn.rotation.out((v[0], v[1], v[2]))
         return (*linear, *self._ball.rates(algebra, q[3:], v[3:]))
+
+    def adjoint(self, v: tuple[Scalar, ...]) -> tuple[tuple[Scalar, ...], ...]:
+        """``[ω x]`` on both parts, and ``[u x]`` from the turn to the shift; nothing with angles."""
+        if self.angles is not None:
+            return super().adjoint(v)
+        u, w = skew((v[0], v[1], v[2])), skew((v[3], v[4], v[5]))
+        upper = tuple((*turning, *moving) for turning, moving in zip(w, u, strict=True))
+        return (*upper, *((0, 0, 0, *row) for row in w))
 
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
         """Nothing."""

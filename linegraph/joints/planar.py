@@ -75,6 +75,11 @@ class Planar(Joint):
         c, s = algebra.cos(q[2]), algebra.sin(q[2])
         return (c * v[0] - s * v[1], s * v[0] + c * v[1], v[2])
 
+    def adjoint(self, v: tuple[Scalar, ...]) -> tuple[tuple[Scalar, ...], ...]:
+        """That of motions in the plane."""
+        x, y, turn = v
+        return ((0, -turn, y), (turn, 0, -x), (0, 0, 0))
+
     def regroup(self, head: Moments) -> tuple[Moments, Moments]:
         """Hand over the part of the inertia that looks the same at every angle about the normal."""
         return round_apart(head)

@@ -10,7 +10,7 @@ from linegraph.joints.base import NO_SHIFT, Joint, Moments, Motion, Restriction,
 from linegraph.joints.composition import angles_of, hinges, reciprocal, turns
 from linegraph.program import Quantity
 from linegraph.rotation import IDENTITY_MATRIX, Full, Rotation, from_quaternion
-from linegraph.vector import ZERO, Matrix, Scalar, Vector
+from linegraph.vector import ZERO, Matrix, Scalar, Vector, skew
 
 if TYPE_CHECKING:
     from linegraph.algebra import Algebra
@@ -115,6 +115,10 @@ class Spherical(Joint):
             w * c + x * b - y * a,
             -(x * a + y * b + z * c),
         )
+
+    def adjoint(self, v: tuple[Scalar, ...]) -> tuple[tuple[Scalar, ...], ...]:
+        """``[ω x]``; nothing with angles."""
+        return super().adjoint(v) if self.angles is not None else skew((v[0], v[1], v[2]))
 
     def regroup(self, head: Moments) -> tuple[Moments, Moments]:
         """Hand over the mass as a point: the joint's centre belongs to both bodies."""

@@ -3,7 +3,8 @@
 //     casadi_generator ROBOT.urdf fixed|floating FOLDER FUNCTION...
 //
 // FUNCTION is one of equations, equations_dense, mass_matrix, bias, inverse_dynamics, forward_dynamics,
-// and the same with _world: Pinocchio's other convention, all frames in the axes of the world.
+// inverse_dynamics_derivatives, forward_dynamics_derivatives (CasADi's Jacobians by q, v and a or u), and the
+// same with _world: Pinocchio's other convention, all frames in the axes of the world.
 // FOLDER/FUNCTION.c is written for each. Printed is JSON: the CPU seconds of reading the robot, the names
 // of its joints in Pinocchio's order, and of each function the operation codes it counts and its CPU seconds.
 
@@ -77,11 +78,11 @@ static casadi::Function function(const SymbolicModel &model, const std::string &
         in.push_back(v);
         out.push_back(over_casadi(pinocchio::nonLinearEffects(model, data, q_, v_)));
     }
-    if (kind == "inverse_dynamics") {
+    if (kind == "inverse_dynamics" || kind == "inverse_dynamics_derivatives") {
         in.insert(in.end(), {v, a});
         out.push_back(over_casadi(pinocchio::rnea(model, data, q_, v_, a_)));
     }
-    if (kind == "forward_dynamics") { // a floating base has no motor: its efforts are zeros
+    if (kind == "forward_dynamics" || kind == "forward_dynamics_derivatives") { // a floating base has no motor: its efforts are zeros
         const int free = model.joints[1].nv() == 6 ? 6 : 0;
         const SX u = SX::sym("u", model.nv - free);
         const Vector tau = over_eigen(vertcat(SX::zeros(free), u));
@@ -90,6 +91,13 @@ static casadi::Function function(const SymbolicModel &model, const std::string &
     }
     if (out.empty()) {
         throw std::invalid_argument("no function " + kind);
+    }
+    if (kind.find("_derivatives") != std::string::npos) {
+        const SX whole = out.front();
+        out.clear();
+        for (const SX &by : in) {
+            out.push_back(jacobian(whole, by));
+        }
     }
     return casadi::Function(name, in, out, {{"cse", true}});
 }
