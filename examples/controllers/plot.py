@@ -30,15 +30,18 @@ class Panel:
 
     Attributes:
         label: of its ordinate, with the unit.
-        lines: what is drawn, by the words of the legend: a column's name, or a function of the log.
+        lines: what is drawn, by the words of the legend: a column's name, or a function of the log. Without
+            words a line belongs to the one before it.
         limits: values worth to compare with, as those of the goal: dashed lines.
         logarithmic: whether the ordinate is.
+        shown: the least and the largest value that is shown, where not all are.
     """
 
     label: str
     lines: dict[str, str | Callable[[Log], Array]]
     limits: tuple[float, ...] = ()
     logarithmic: bool = False
+    shown: tuple[float, float] | None = None
 
 
 def largest_error(law: str) -> Callable[[Log], Array]:
@@ -46,7 +49,7 @@ def largest_error(law: str) -> Callable[[Log], Array]:
 
     def errors(log: Log) -> Array:
         joints = [log[f"{law}_q{i}"] - log[f"wanted{i}"] for i in range(1, 8)]
-        return 1e3 * np.max(np.abs(joints), axis=0)
+        return np.asarray(1e3 * np.max(np.abs(joints), axis=0))
 
     return errors
 
@@ -61,7 +64,18 @@ def degrees(column: str) -> Callable[[Log], Array]:
     return lambda log: np.degrees(log[column])
 
 
+def within(column: str, sign: float) -> Callable[[Log], Array]:
+    """Two standard deviations that the filter believes a column's error has."""
+    return lambda log: sign * 2.0 * log[f"{column}_deviation"]
+
+
 PANELS = {
+    "cart_pole_motor": (
+        Panel("pole / deg", {"": degrees("swing")}, limits=(-180, 180)),
+        Panel("cart / m", {"": "slide"}, limits=(-0.5, 0.5)),
+        Panel("voltage / V", {"": "voltage"}, limits=(-12, 12)),
+        Panel("current / A", {"": "current"}),
+    ),
     "computed_torque": (
         Panel("angle / rad", {f"joint {i}": f"computed_q{i}" for i in (1, 2, 4, 7)}),
         Panel(
@@ -71,14 +85,33 @@ PANELS = {
         ),
         Panel("torque / N m", {f"joint {i}": f"computed_u{i}" for i in (1, 2, 4, 7)}),
     ),
+    "ekf": (
+        Panel("angle / rad", {"arm": "shaft", "pendulum": "hinge"}),
+        Panel("rate / rad/s", {"difference": "hinge_difference", "estimate": "hinge_dot_estimate"}),
+        Panel(
+            "error of the rate / rad/s",
+            {
+                "estimate": scaled("hinge_dot_estimate", 1, "hinge_dot"),
+                "2 deviations believed": within("hinge_dot", 1),
+                "": within("hinge_dot", -1),
+            },
+            shown=(-0.2, 0.2),
+        ),
+        Panel("normalized error", {"": "mean_normalized"}, limits=(3.1718, 4.9229)),
+    ),
     "four_bar": (
         Panel("angle / rad", {"crank": "motor", "rocker": "swing", "rocker, wanted": "wanted"}),
         Panel("error of the rocker / mrad", {"": scaled("swing", 1e3, "wanted")}, limits=(-2, 2)),
         Panel("torque / N m", {"": "torque"}),
         Panel("loop open by / m", {"": "open"}, limits=(1e-9,), logarithmic=True),
     ),
+    "furuta": (
+        Panel("pendulum / deg", {"": degrees("hinge")}, limits=(-180, 180)),
+        Panel("arm / rad", {"": "shaft"}, limits=(-1.5, 1.5)),
+        Panel("torque / N m", {"": "torque"}, limits=(-0.5, 0.5)),
+    ),
     "mpc": (
-        Panel("pole / deg, upright at 180", {"": degrees("swing")}, limits=(180,)),
+        Panel("pole / deg", {"": degrees("swing")}, limits=(-180, 180)),
         Panel("cart / m", {"": "slide"}, limits=(-0.6, 0.6)),
         Panel("force / N", {"": "force"}, limits=(-8, 8)),
     ),
@@ -110,13 +143,18 @@ def draw(name: str, log: Log, path: Path) -> None:
         canvas = FigureCanvasAgg(figure)
         for place, panel in enumerate(panels, start=1):
             axes = figure.add_subplot(len(panels), 1, place)
-            for colour, (words, what) in zip(COLOURS, panel.lines.items(), strict=False):
+            colours = iter(COLOURS)
+            colour = COLOURS[0]
+            for words, what in panel.lines.items():
+                colour = next(colours) if words else colour
                 values = log[what] if isinstance(what, str) else what(log)
                 axes.plot(log["t"], values, color=colour, linewidth=1.2, label=words)
             for limit in panel.limits:
                 axes.axhline(limit, color="#888888", linewidth=0.8, linestyle="--")
             if panel.logarithmic:
                 axes.set_yscale("log")
+            if panel.shown is not None:
+                axes.set_ylim(panel.shown)
             if len(panel.lines) > 1:
                 axes.legend(loc="upper right", fontsize=8, ncols=len(panel.lines))
             axes.set_ylabel(panel.label, fontsize=9)
@@ -128,7 +166,7 @@ def draw(name: str, log: Log, path: Path) -> None:
         figure.subplots_adjust(
             left=0.1, right=0.98, top=0.98, bottom=0.45 / (len(panels) + 0.2) / 1.9, hspace=0.12
         )
-        canvas.print_png(str(path), metadata={"Software": None})
+        canvas.print_png(str(path), metadata={"Software": None})  # type: ignore[no-untyped-call]
 
 
 def main() -> None:

@@ -8,7 +8,7 @@
 #define DISTURBANCE 0.01 /* N m, standard deviation of what disturbs the torque, anew in each period */
 #define NOISE 0.01       /* rad, standard deviation of the noise of the angles */
 #define MOST 0.25        /* N m */
-#define ENERGY 0.1       /* J, of the pendulum that swings: to some 120 degrees */
+#define ENERGY 0.1       /* J, to which the pendulum is pumped: it comes to some 95 degrees */
 #define PUMP 0.5         /* s/rad: torque for the energy that it lacks */
 #define STIFFNESS 0.05   /* N m/rad, of the arm, back to where it began */
 #define DAMPING 0.01     /* N m s/rad, of the arm */
