@@ -258,9 +258,10 @@ def test_detuned_it_misses_its_goal(name: str, tmp_path: Path) -> None:
     ((new, old, file),) = re.findall(r"With `(.*?)` for `(.*?)`\s+in\s+`(.*?)`", readme(name))
     here = place(tmp_path)
     source = tmp_path / "examples" / "controllers" / name / file
-    text = source.read_text()
-    assert text.count(old) == 1
-    source.write_text(text.replace(old, new))
+    pattern = r"\b" + r"\s+".join(map(re.escape, old.split())) + r"(?![\d.])"
+    text, count = re.subn(pattern, new, source.read_text())
+    assert count == 1
+    source.write_text(text)
     emit, compile_it, run, _ = block(name, "sh").splitlines()
     assert here.run(f"{emit}\n{compile_it}").returncode == 0
     done = here.run(run)

@@ -207,6 +207,4 @@ double numerics_quantized(double x, double resolution) {
     return resolution * floor(x / resolution + 0.5);
 }
 
-double numerics_clipped(double x, double most) {
-    return fmax(-most, fmin(x, most));
-}
+double numerics_clipped(double x, double most) { return fmax(-most, fmin(x, most)); }

@@ -1,7 +1,8 @@
-/* What the controllers and their simulations share: small dense numerics, no heap, no state of their own.
+/* What the controllers and their simulations share: small dense numerics, no heap, no state of
+ * their own.
  *
- * Matrices are dense and row-major. No dimension may exceed NUMERICS_MOST. What can fail returns a status,
- * 0 if all is well.
+ * Matrices are dense and row-major. No dimension may exceed NUMERICS_MOST. What can fail returns a
+ * status, 0 if all is well.
  */
 #ifndef NUMERICS_H
 #define NUMERICS_H
@@ -24,8 +25,8 @@ void numerics_product(int n, int k, int m, const double A[], const double B[], d
 void numerics_discretize(int n, int m, const double A[], const double B[], double h, double Ad[],
                          double Bd[]);
 
-/* Gain K (m x n) of u = -K x that minimises sum x^T Q x + u^T R u for x+ = A x + B u, with diagonal Q (n) and
- * R (m): the Riccati recursion, until P no longer changes. 1: it does not settle. */
+/* Gain K (m x n) of u = -K x that minimises sum x^T Q x + u^T R u for x+ = A x + B u, with diagonal
+ * Q (n) and R (m): the Riccati recursion, until P no longer changes. 1: it does not settle. */
 int numerics_lqr(int n, int m, const double A[], const double B[], const double Q[],
                  const double R[], double K[]);
 

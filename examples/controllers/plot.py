@@ -110,6 +110,12 @@ PANELS = {
         Panel("arm / rad", {"": "shaft"}, limits=(-1.5, 1.5)),
         Panel("torque / N m", {"": "torque"}, limits=(-0.5, 0.5)),
     ),
+    "impedance": (
+        Panel("y / m", {"wanted": "wanted_y", "tool": "y", "response": "response_y"}),
+        Panel("x / m", {"wanted": "wanted_x", "tool": "x"}),
+        Panel("force / N", {"": "force"}, limits=(17.48, 25)),
+        Panel("turned by / mrad", {"": scaled("turn", 1e3)}, limits=(10,)),
+    ),
     "mpc": (
         Panel("pole / deg", {"": degrees("swing")}, limits=(-180, 180)),
         Panel("cart / m", {"": "slide"}, limits=(-0.6, 0.6)),

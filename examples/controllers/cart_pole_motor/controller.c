@@ -4,17 +4,17 @@
 
 #include "../numerics.h"
 
-#define PERIOD 2e-3 /* s */
-#define MOST 12.0   /* V */
+#define PERIOD 2e-3  /* s */
+#define MOST   12.0  /* V */
 #define FILTER 150.0 /* rad/s, of the rates */
-#define PUMP 50.0   /* m/s^2/J: the cart's acceleration for what the pole lacks in energy */
-#define HARD 3.5    /* m/s^2, the most of it */
-#define CENTRE 5.0  /* 1/s^2, of the cart, back to the middle */
-#define BRAKE 1.0   /* 1/s, of the cart */
-#define CATCH 0.35  /* rad, from upright: there balancing begins */
-#define SLOW 3.0    /* rad/s: and below this */
-#define LOSE 0.8    /* rad: there it has failed */
-#define PI 3.141592653589793
+#define PUMP   50.0  /* m/s^2/J: the cart's acceleration for what the pole lacks in energy */
+#define HARD   3.5   /* m/s^2, the most of it */
+#define CENTRE 5.0   /* 1/s^2, of the cart, back to the middle */
+#define BRAKE  1.0   /* 1/s, of the cart */
+#define CATCH  0.35  /* rad, from upright: there balancing begins */
+#define SLOW   3.0   /* rad/s: and below this */
+#define LOSE   0.8   /* rad: there it has failed */
+#define PI     3.141592653589793
 
 enum { SLIDE = 0, SWING = 1, CURRENT = 2 };
 
@@ -46,8 +46,9 @@ int controller_start(controller *self, const double q[NQ]) {
     return numerics_lqr(NX, 1, Ad, Bd, Q, R, self->gain);
 }
 
-/* The voltage that accelerates the cart so, its current settled: M v' + h = (0, 0, u) with slide'' = a and
- * current' = 0 is linear in swing'' and the current (the velocity v[2]), so three values of it say all. */
+/* The voltage that accelerates the cart so, its current settled: M v' + h = (0, 0, u) with slide''
+ * = a and current' = 0 is linear in swing'' and the current (the velocity v[2]), so three values of
+ * it say all. */
 static double voltage(const controller *self, const double q[NQ], const double rate[NQ], double a) {
     double v[NV] = {rate[SLIDE], rate[SWING], 0.0};
     double acceleration[NV] = {a, 0.0, 0.0};
@@ -97,7 +98,8 @@ double controller_step(controller *self, const double q[NQ], double current) {
         self->rate[i] += share * ((q[i] - self->q[i]) / PERIOD - self->rate[i]);
         self->q[i] = q[i];
     }
-    self->balancing = self->balancing ? fabs(off) < LOSE : fabs(off) < CATCH && fabs(self->rate[SWING]) < SLOW;
+    self->balancing =
+        self->balancing ? fabs(off) < LOSE : fabs(off) < CATCH && fabs(self->rate[SWING]) < SLOW;
     if (self->balancing) {
         const double x[NX] = {q[SLIDE], off, self->rate[SLIDE], self->rate[SWING], current};
         numerics_product(1, NX, 1, self->gain, x, &u);

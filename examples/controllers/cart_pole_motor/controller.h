@@ -1,7 +1,7 @@
 /* A cart-pole with its motor: swing-up by energy, balance by the linear-quadratic regulator.
  *
- * What runs on the target: this file, controller.c, numerics.h, numerics.c and the emitted cart_pole_motor.h,
- * cart_pole_motor.c.
+ * What runs on the target: this file, controller.c, numerics.h, numerics.c and the emitted
+ * cart_pole_motor.h, cart_pole_motor.c.
  */
 #ifndef CONTROLLER_H
 #define CONTROLLER_H

@@ -1,7 +1,7 @@
 /* The cart-pole in closed loop, from hanging; prints its motion as CSV.
  *
- * The cart-pole that is simulated has a heavier pole than the controller takes it to have, and a motor that has
- * become warm. Once it stands, the pole is struck.
+ * The cart-pole that is simulated has a heavier pole than the controller takes it to have, and a
+ * motor that has become warm. Once it stands, the pole is struck.
  */
 #include <math.h>
 #include <stdio.h>
@@ -9,17 +9,17 @@
 #include "../numerics.h"
 #include "controller.h"
 
-#define PERIOD 2e-3 /* s, of the controller */
-#define SUBSTEPS 40 /* of the simulation in each: the current settles within 70 us */
-#define LOGGED 5    /* periods from one line of the log to the next */
-#define TIME 10.0   /* s */
-#define BLOW_TIME 7.0 /* s */
-#define BLOW 1.0      /* rad/s, by which the pole is faster then */
-#define PI 3.141592653589793
-#define GOAL_TIME 4.0   /* s, from when on the pole stands */
+#define PERIOD     2e-3 /* s, of the controller */
+#define SUBSTEPS   40   /* of the simulation in each: the current settles within 70 us */
+#define LOGGED     5    /* periods from one line of the log to the next */
+#define TIME       10.0 /* s */
+#define BLOW_TIME  7.0  /* s */
+#define BLOW       1.0  /* rad/s, by which the pole is faster then */
+#define PI         3.141592653589793
+#define GOAL_TIME  4.0  /* s, from when on the pole stands */
 #define GOAL_ANGLE 0.2  /* rad, to which it does so until the end, the blow included */
-#define GOAL_END 0.02   /* rad and m, in the last second */
-#define GOAL_RAIL 0.5   /* m, to either side, always */
+#define GOAL_END   0.02 /* rad and m, in the last second */
+#define GOAL_RAIL  0.5  /* m, to either side, always */
 
 enum { SLIDE = 0, SWING = 1, CURRENT = NQ + 2 };
 
@@ -82,7 +82,7 @@ int main(void) {
         fprintf(stderr, "stopped with status %d\n", status);
         return 2;
     }
-    fprintf(stderr, "upright since %.2f s, at last to %.4f rad or m; within %.3f m of the middle\n", up,
-            end, farthest);
+    fprintf(stderr, "upright since %.2f s, at last to %.4f rad or m; within %.3f m of the middle\n",
+            up, end, farthest);
     return up < GOAL_TIME && end < GOAL_END && farthest < GOAL_RAIL ? 0 : 1;
 }

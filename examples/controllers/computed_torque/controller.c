@@ -2,7 +2,8 @@
 
 #define BANDWIDTH 60.0 /* rad/s: errors obey e'' + 2 BANDWIDTH e' + BANDWIDTH^2 e = 0 */
 
-static const double most[JOINTS] = {87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0}; /* N m, of the drives */
+static const double most[JOINTS] = {87.0, 87.0, 87.0, 87.0,
+                                    12.0, 12.0, 12.0}; /* N m, of the drives */
 
 void controller_start(controller *self, controller_law law, const double q[JOINTS]) {
     double M[JOINTS * JOINTS];
@@ -10,7 +11,8 @@ void controller_start(controller *self, controller_law law, const double q[JOINT
     self->law = law;
     arm_prepare(&arm_default_parameters, self->model);
     arm_mass_matrix_prepared(self->model, q, M);
-    for (int i = 0; i < JOINTS; ++i) { /* the same bandwidth, as far as that can be without a model */
+    for (int i = 0; i < JOINTS;
+         ++i) { /* the same bandwidth, as far as that can be without a model */
         self->stiffness[i] = BANDWIDTH * BANDWIDTH * M[i * JOINTS + i];
         self->damping[i] = 2.0 * BANDWIDTH * M[i * JOINTS + i];
     }
@@ -33,7 +35,8 @@ static void pd_gravity(const controller *self, const controller_reference *wante
 
     arm_inverse_dynamics_prepared(self->model, q, rest, rest, u); /* at rest: gravity alone */
     for (int i = 0; i < JOINTS; ++i) {
-        u[i] += self->stiffness[i] * (wanted->q[i] - q[i]) + self->damping[i] * (wanted->v[i] - v[i]);
+        u[i] +=
+            self->stiffness[i] * (wanted->q[i] - q[i]) + self->damping[i] * (wanted->v[i] - v[i]);
     }
 }
 

@@ -1,7 +1,7 @@
 /* The arm in closed loop, once under each law; prints both motions side by side as CSV.
  *
- * The arm that is simulated carries a payload that the controller does not know, its links are not those of
- * the URDF, and its joints have friction.
+ * The arm that is simulated carries a payload that the controller does not know, its links are not
+ * those of the URDF, and its joints have friction.
  */
 #include <math.h>
 #include <stdio.h>
@@ -9,11 +9,11 @@
 #include "../numerics.h"
 #include "controller.h"
 
-#define PERIOD 1e-3 /* s, of the controller */
-#define SUBSTEPS 2  /* of the simulation in each */
-#define LOGGED 10   /* periods from one line of the log to the next */
-#define MOVE 1.2    /* s, from one waypoint to the next */
-#define GOAL_RMS 3e-3
+#define PERIOD       1e-3 /* s, of the controller */
+#define SUBSTEPS     2    /* of the simulation in each */
+#define LOGGED       10   /* periods from one line of the log to the next */
+#define MOVE         1.2  /* s, from one waypoint to the next */
+#define GOAL_RMS     3e-3
 #define GOAL_LARGEST 8e-3
 
 enum { NQ = ARM_NQ, NV = ARM_NV, NS = ARM_NS, MOVES = 3, LAWS = 2 };
@@ -31,10 +31,10 @@ typedef struct {
     double u[ARM_NU];    /* held over a period */
 } plant;
 
-#define SCALE(LINK, FACTOR)                                                                         \
-    (p.m_##LINK *= (FACTOR), p.mx_##LINK *= (FACTOR), p.my_##LINK *= (FACTOR),                      \
-     p.mz_##LINK *= (FACTOR), p.Ixx_##LINK *= (FACTOR), p.Ixy_##LINK *= (FACTOR),                   \
-     p.Ixz_##LINK *= (FACTOR), p.Iyy_##LINK *= (FACTOR), p.Iyz_##LINK *= (FACTOR),                  \
+#define SCALE(LINK, FACTOR)                                                                        \
+    (p.m_##LINK *= (FACTOR), p.mx_##LINK *= (FACTOR), p.my_##LINK *= (FACTOR),                     \
+     p.mz_##LINK *= (FACTOR), p.Ixx_##LINK *= (FACTOR), p.Ixy_##LINK *= (FACTOR),                  \
+     p.Ixz_##LINK *= (FACTOR), p.Iyy_##LINK *= (FACTOR), p.Iyz_##LINK *= (FACTOR),                 \
      p.Izz_##LINK *= (FACTOR))
 
 static void plant_start(plant *self) {

@@ -4,14 +4,14 @@
 
 #include "../numerics.h"
 
-#define PERIOD 5e-3      /* s */
-#define DISTURBANCE 0.01 /* N m, standard deviation of what disturbs the torque, anew in each period */
-#define NOISE 0.01       /* rad, standard deviation of the noise of the angles */
-#define MOST 0.25        /* N m */
-#define ENERGY 0.1       /* J, to which the pendulum is pumped: it comes to some 95 degrees */
-#define PUMP 0.5         /* s/rad: torque for the energy that it lacks */
-#define STIFFNESS 0.05   /* N m/rad, of the arm, back to where it began */
-#define DAMPING 0.01     /* N m s/rad, of the arm */
+#define PERIOD      5e-3 /* s */
+#define DISTURBANCE 0.01 /* N m, standard deviation of the torque's disturbance in each period */
+#define NOISE       0.01 /* rad, standard deviation of the noise of the angles */
+#define MOST        0.25 /* N m */
+#define ENERGY      0.1  /* J, to which the pendulum is pumped: it comes to some 95 degrees */
+#define PUMP        0.5  /* s/rad: torque for the energy that it lacks */
+#define STIFFNESS   0.05 /* N m/rad, of the arm, back to where it began */
+#define DAMPING     0.01 /* N m s/rad, of the arm */
 
 enum { SHAFT = 0, HINGE = 1 };
 
@@ -64,7 +64,8 @@ static int predict(controller *self) {
     return 0;
 }
 
-/* Both angles are measured: x += K (q - x_q), P -= K P_q, with K^T = (P_q + r^2)^-1 P_q, P_q the first rows of P. */
+/* Both angles are measured: x += K (q - x_q), P -= K P_q, with K^T = (P_q + r^2)^-1 P_q, P_q the
+ * first rows of P. */
 static int correct(controller *self, const double q[NQ]) {
     double S[NQ * NQ];
     double gain[NQ * NX]; /* K^T */

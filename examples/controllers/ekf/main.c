@@ -1,7 +1,9 @@
-/* The pendulum in closed loop, RUNS times with other noise; prints the first run and the mean over all as CSV.
+/* The pendulum in closed loop, RUNS times with other noise; prints the first run and the mean over
+ * all as CSV.
  *
- * The torque is disturbed by what is drawn anew in each period, the angles are measured with noise, and where the
- * filter starts is as uncertain as it believes: of these it knows the standard deviations.
+ * The torque is disturbed by what is drawn anew in each period, the angles are measured with noise,
+ * and where the filter starts is as uncertain as it believes: of these it knows the standard
+ * deviations.
  */
 #include <math.h>
 #include <stdio.h>
@@ -9,18 +11,18 @@
 #include "../numerics.h"
 #include "controller.h"
 
-#define PERIOD 5e-3 /* s, of the controller */
-#define SUBSTEPS 5  /* of the simulation in each */
-#define TIME 5.0    /* s */
+#define PERIOD      5e-3 /* s, of the controller */
+#define SUBSTEPS    5    /* of the simulation in each */
+#define TIME        5.0  /* s */
 #define DISTURBANCE 0.01
-#define NOISE 0.01
-#define FILTER 70.0   /* rad/s, of the differences that the filter is compared with */
-#define GOAL_RATE 0.05 /* rad/s, RMS error of both rates */
-#define GOAL_BETTER 10 /* times better than differences at least */
-#define GOAL_SHARE 0.9 /* of the time at which the errors are as large as the filter believes */
+#define NOISE       0.01
+#define FILTER      70.0 /* rad/s, of the differences that the filter is compared with */
+#define GOAL_RATE   0.05 /* rad/s, RMS error of both rates */
+#define GOAL_BETTER 10   /* times better than differences at least */
+#define GOAL_SHARE  0.9  /* of the time at which the errors are as large as the filter believes */
 
-/* Of the mean of the squared errors by their covariance over RUNS runs, a chi-square of 4 RUNS degrees of freedom
- * divided by RUNS: 2.5 % are below, 2.5 % above. */
+/* Of the mean of the squared errors by their covariance over RUNS runs, a chi-square of 4 RUNS
+ * degrees of freedom divided by RUNS: 2.5 % are below, 2.5 % above. */
 enum { RUNS = 40 };
 #define BELOW 3.1718
 #define ABOVE 4.9229
@@ -68,7 +70,7 @@ static void loop_start(loop *self, unsigned long long seed) {
 /* One period: move, measure, control. */
 static int loop_step(loop *self, double t) {
     const double share = 1.0 - exp(-FILTER * PERIOD);
-    double u;
+    double u = 0.0;
     int status = 0;
 
     for (int k = 0; k < SUBSTEPS && status == 0; ++k) {
@@ -110,8 +112,7 @@ static double normalized(const loop *self) {
 static void print_row(double t, const loop *first, double mean) {
     printf("%.3f", t);
     for (int i = 0; i < NX; ++i) {
-        printf(",%.9g,%.9g,%.9g", first->x[i], first->law.x[i],
-               sqrt(first->law.P[i * NX + i]));
+        printf(",%.9g,%.9g,%.9g", first->x[i], first->law.x[i], sqrt(first->law.P[i * NX + i]));
     }
     printf(",%.9g,%.9g,%.9g,%.9g\n", first->difference[SHAFT], first->difference[HINGE],
            first->furuta.u, mean);
@@ -155,8 +156,8 @@ int main(void) {
     for (int i = 0; i < NV; ++i) {
         const double filter = sqrt(squares[0][i]);
         const double difference = sqrt(squares[1][i]);
-        fprintf(stderr, "%-5s RMS %.3f rad/s, by differences %.3f rad/s\n", furuta_v_names[i], filter,
-                difference);
+        fprintf(stderr, "%-5s RMS %.3f rad/s, by differences %.3f rad/s\n", furuta_v_names[i],
+                filter, difference);
         good = good && filter < GOAL_RATE && GOAL_BETTER * filter < difference;
     }
     fprintf(stderr, "errors as large as believed %.1f %% of the time\n", 100.0 * within);

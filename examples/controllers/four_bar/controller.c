@@ -2,11 +2,11 @@
 
 #include <math.h>
 
-#define PERIOD 1e-3     /* s */
-#define BANDWIDTH 50.0  /* rad/s: errors obey e'' + 2 BANDWIDTH e' + BANDWIDTH^2 e = 0 */
-#define FILTER 1000.0   /* rad/s, of the crank's speed */
-#define LEAST_RATIO 0.02 /* of rocker's to crank's speed: below, the crank is near a dead centre */
-#define MOST 3.0        /* N m, of the motor */
+#define PERIOD      1e-3   /* s */
+#define BANDWIDTH   50.0   /* rad/s: errors obey e'' + 2 BANDWIDTH e' + BANDWIDTH^2 e = 0 */
+#define FILTER      1000.0 /* rad/s, of the crank's speed */
+#define LEAST_RATIO 0.02   /* of rocker's to crank's speed: below, a dead centre is near */
+#define MOST        3.0    /* N m, of the motor */
 
 enum { MOTOR = 0, SWING = 2 };
 
@@ -24,8 +24,8 @@ int controller_step(controller *self, const controller_reference *wanted, double
     double v[FOUR_BAR_NV];
     double T[FOUR_BAR_NV];    /* v = T w, w the crank's speed */
     double rest[FOUR_BAR_NV]; /* v' = T w' + rest */
-    double Mr;
-    double hr;
+    double Mr = 0.0;
+    double hr = 0.0;
     const double share = 1.0 - exp(-FILTER * PERIOD);
     int status;
 
@@ -46,7 +46,8 @@ int controller_step(controller *self, const controller_reference *wanted, double
         const double rocker = wanted->acceleration + 2.0 * BANDWIDTH * (wanted->rate - v[SWING]) +
                               BANDWIDTH * BANDWIDTH * (wanted->angle - q[SWING]);
         const double acceleration = (rocker - rest[SWING]) / T[SWING];
-        *u = fmax(-MOST, fmin(Mr * acceleration + hr, MOST)); /* T^T Q is u: the motor is the crank's */
+        *u = fmax(-MOST,
+                  fmin(Mr * acceleration + hr, MOST)); /* T^T Q is u: the motor is the crank's */
         for (int i = 0; i < FOUR_BAR_NQ; ++i) {
             self->q[i] = q[i];
         }

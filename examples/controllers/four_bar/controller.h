@@ -24,8 +24,9 @@ typedef struct {
 /* `q` tells which of the two ways the linkage is assembled, and where it starts, at rest. */
 void controller_start(controller *self, const double q[FOUR_BAR_NQ]);
 
-/* Torque u for the measured angle of the crank; to be called at 1 kHz. A status other than 0: the angle is none
- * that the linkage can have, or the crank is where it cannot move the rocker; then u is 0. */
+/* Torque u for the measured angle of the crank; to be called at 1 kHz. A status other than 0: the
+ * angle is none that the linkage can have, or the crank is where it cannot move the rocker; then u
+ * is 0. */
 int controller_step(controller *self, const controller_reference *wanted, double crank, double *u);
 
 #endif

@@ -1,8 +1,8 @@
 /* The linkage in closed loop; prints its motion as CSV.
  *
- * The linkage that is simulated is heavier than the controller takes it to be, and its bearing brakes more. It
- * is simulated in the coordinates of the tree, with multipliers for the loop: what the controller does by closing
- * the loop itself is done here in another way.
+ * The linkage that is simulated is heavier than the controller takes it to be, and its bearing
+ * brakes more. It is simulated in the coordinates of the tree, with multipliers for the loop: what
+ * the controller does by closing the loop itself is done here in another way.
  */
 #include <math.h>
 #include <stdio.h>
@@ -10,14 +10,14 @@
 #include "../numerics.h"
 #include "controller.h"
 
-#define PERIOD 1e-3 /* s, of the controller */
-#define SUBSTEPS 4  /* of the simulation in each */
-#define LOGGED 10   /* periods from one line of the log to the next */
-#define TIME 4.0    /* s */
-#define PI 3.141592653589793
-#define GOAL_RMS 1e-3
+#define PERIOD       1e-3 /* s, of the controller */
+#define SUBSTEPS     4    /* of the simulation in each */
+#define LOGGED       10   /* periods from one line of the log to the next */
+#define TIME         4.0  /* s */
+#define PI           3.141592653589793
+#define GOAL_RMS     1e-3
 #define GOAL_LARGEST 2e-3
-#define GOAL_OPEN 1e-9 /* m and 1, of the closed loop */
+#define GOAL_OPEN    1e-9 /* m and 1, of the closed loop */
 
 enum { NQ = FOUR_BAR_NQ, NV = FOUR_BAR_NV, NS = NQ + NV, NP = FOUR_BAR_NP, SWING = 2 };
 
@@ -66,8 +66,8 @@ static double opening(const plant *self, const double q[NQ]) {
     return largest;
 }
 
-/* All angles where the rocker stands at `angle`: the crank's by Newton's method, rocker's by crank's speed its
- * derivative. */
+/* All angles where the rocker stands at `angle`: the crank's by Newton's method, rocker's by
+ * crank's speed its derivative. */
 static int start(const plant *self, double angle, double q[NQ]) {
     const double guess[NQ] = {0.8, 0.0, 1.2};
     const double unit = 1.0;

@@ -5,17 +5,17 @@
 #include "../numerics.h"
 
 #define PERIOD 2e-3  /* s */
-#define MOST 0.5    /* N m */
+#define MOST   0.5   /* N m */
 #define FILTER 150.0 /* rad/s, of the rates */
-#define PUMP 400.0   /* rad/s^2/J: the arm's acceleration for what the pendulum lacks in energy */
-#define MARGIN 1.1  /* of the energy it is pumped to: friction takes some on the way */
-#define HARD 15.0    /* rad/s^2, the most of it */
+#define PUMP   400.0 /* rad/s^2/J: the arm's acceleration for what the pendulum lacks in energy */
+#define MARGIN 1.1   /* of the energy it is pumped to: friction takes some on the way */
+#define HARD   15.0  /* rad/s^2, the most of it */
 #define CENTRE 10.0  /* 1/s^2, of the arm, back to where it began */
-#define BRAKE 1.0    /* 1/s, of the arm */
-#define CATCH 0.4   /* rad, from upright: there balancing begins */
-#define SLOW 4.0     /* rad/s: and below this */
-#define LOSE 0.8     /* rad: there it has failed */
-#define PI 3.141592653589793
+#define BRAKE  1.0   /* 1/s, of the arm */
+#define CATCH  0.4   /* rad, from upright: there balancing begins */
+#define SLOW   4.0   /* rad/s: and below this */
+#define LOSE   0.8   /* rad: there it has failed */
+#define PI     3.141592653589793
 
 enum { SHAFT = 0, HINGE = 1 };
 
@@ -46,8 +46,8 @@ int controller_start(controller *self, const double q[NQ]) {
     return numerics_lqr(NX, 1, Ad, Bd, Q, R, self->gain);
 }
 
-/* The torque that accelerates the arm so: M v' + h = (u, 0) with shaft'' = a is linear in hinge'', so two values
- * of it say all. */
+/* The torque that accelerates the arm so: M v' + h = (u, 0) with shaft'' = a is linear in hinge'',
+ * so two values of it say all. */
 static double torque(const controller *self, const double q[NQ], const double rate[NQ], double a) {
     double acceleration[NV] = {a, 0.0};
     double none[NV];
@@ -79,8 +79,8 @@ double controller_step(controller *self, const double q[NQ]) {
         self->rate[i] += share * ((q[i] - self->q[i]) / PERIOD - self->rate[i]);
         self->q[i] = q[i];
     }
-    self->balancing = self->balancing ? fabs(off) < LOSE
-                                      : fabs(off) < CATCH && fabs(self->rate[HINGE]) < SLOW;
+    self->balancing =
+        self->balancing ? fabs(off) < LOSE : fabs(off) < CATCH && fabs(self->rate[HINGE]) < SLOW;
     if (self->balancing) {
         const double x[NX] = {q[SHAFT], off, self->rate[SHAFT], self->rate[HINGE]};
         numerics_product(1, NX, 1, self->gain, x, &u);

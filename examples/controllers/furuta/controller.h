@@ -1,6 +1,7 @@
 /* A Furuta pendulum: swing-up by energy, balance by the linear-quadratic regulator.
  *
- * What runs on the target: this file, controller.c, numerics.h, numerics.c and the emitted furuta.h, furuta.c.
+ * What runs on the target: this file, controller.c, numerics.h, numerics.c and the emitted
+ * furuta.h, furuta.c.
  */
 #ifndef CONTROLLER_H
 #define CONTROLLER_H

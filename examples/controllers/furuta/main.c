@@ -1,7 +1,7 @@
 /* The Furuta pendulum in closed loop, from hanging; prints its motion as CSV.
  *
- * What is simulated has a heavier pendulum than the controller takes it to have, and bearings that brake more. Once
- * it stands, the pendulum is struck.
+ * What is simulated has a heavier pendulum than the controller takes it to have, and bearings that
+ * brake more. Once it stands, the pendulum is struck.
  */
 #include <math.h>
 #include <stdio.h>
@@ -9,17 +9,17 @@
 #include "../numerics.h"
 #include "controller.h"
 
-#define PERIOD 2e-3   /* s, of the controller */
-#define SUBSTEPS 8    /* of the simulation in each */
-#define LOGGED 5      /* periods from one line of the log to the next */
-#define TIME 10.0     /* s */
-#define BLOW_TIME 7.0 /* s */
-#define BLOW 1.0      /* rad/s, by which the pendulum is faster then */
-#define PI 3.141592653589793
-#define GOAL_TIME 4.0  /* s, from when on the pendulum stands */
-#define GOAL_ANGLE 0.3 /* rad, to which it does so until the end, the blow included */
-#define GOAL_END 0.02  /* rad, both angles in the last second */
-#define GOAL_TURN 1.5 /* rad, of the arm to either side, always */
+#define PERIOD     2e-3 /* s, of the controller */
+#define SUBSTEPS   8    /* of the simulation in each */
+#define LOGGED     5    /* periods from one line of the log to the next */
+#define TIME       10.0 /* s */
+#define BLOW_TIME  7.0  /* s */
+#define BLOW       1.0  /* rad/s, by which the pendulum is faster then */
+#define PI         3.141592653589793
+#define GOAL_TIME  4.0  /* s, from when on the pendulum stands */
+#define GOAL_ANGLE 0.3  /* rad, to which it does so until the end, the blow included */
+#define GOAL_END   0.02 /* rad, both angles in the last second */
+#define GOAL_TURN  1.5  /* rad, of the arm to either side, always */
 
 enum { SHAFT = 0, HINGE = 1 };
 

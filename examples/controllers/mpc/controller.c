@@ -4,12 +4,12 @@
 
 #include "../numerics.h"
 
-#define PERIOD 0.02     /* s, of the plan: it looks HORIZON of them ahead */
-#define MOST 8.0        /* N, of the motor */
-#define RAIL 0.5        /* m, from the middle to where the rail is to be kept free */
-#define MOST_SPREAD 6.0 /* N, of what is tried about the plan */
-#define PERSISTENCE 0.7 /* of that from one period to the next */
-#define TEMPERATURE 3.0 /* how much worse a plan may be than the best and still count */
+#define PERIOD      0.02 /* s, of the plan: it looks HORIZON of them ahead */
+#define MOST        8.0  /* N, of the motor */
+#define RAIL        0.5  /* m, from the middle to where the rail is to be kept free */
+#define MOST_SPREAD 6.0  /* N, of what is tried about the plan */
+#define PERSISTENCE 0.7  /* of that from one period to the next */
+#define TEMPERATURE 3.0  /* how much worse a plan may be than the best and still count */
 
 enum { SLIDE = 0, SWING = 1 };
 
@@ -39,13 +39,13 @@ static void try(controller *self) {
             const double fresh = spread * numerics_normal(&self->seed);
             aside = k == 0 ? fresh
                            : PERSISTENCE * aside + sqrt(1.0 - PERSISTENCE * PERSISTENCE) * fresh;
-            self->tried[s * HORIZON + k] =
-                numerics_clipped(self->plan[k] + aside, MOST);
+            self->tried[s * HORIZON + k] = numerics_clipped(self->plan[k] + aside, MOST);
         }
     }
 }
 
-/* All of them at once over one period of the plan: M v' + h = (u, 0) for all, then each by itself. */
+/* All of them at once over one period of the plan: M v' + h = (u, 0) for all, then each by itself.
+ */
 static void advance(controller *self, int k) {
     cart_pole_equations_prepared_batch(SAMPLES, self->model, self->q, self->v, self->M, self->h);
     for (int s = 0; s < SAMPLES; ++s) {

@@ -1,7 +1,7 @@
 /* Sampling model-predictive control of a cart-pole: model-predictive path integrals.
  *
- * What runs on the target: this file, controller.c, numerics.h, numerics.c and the emitted cart_pole.h,
- * cart_pole.c, with functions of many states.
+ * What runs on the target: this file, controller.c, numerics.h, numerics.c and the emitted
+ * cart_pole.h, cart_pole.c, with functions of many states.
  */
 #ifndef CONTROLLER_H
 #define CONTROLLER_H

@@ -1,7 +1,7 @@
 /* The cart-pole in closed loop, from hanging; prints its motion as CSV.
  *
- * The cart-pole that is simulated has a heavier pole than the controller takes it to have, and friction on its
- * rail.
+ * The cart-pole that is simulated has a heavier pole than the controller takes it to have, and
+ * friction on its rail.
  */
 #include <math.h>
 #include <stdio.h>
@@ -9,14 +9,14 @@
 #include "../numerics.h"
 #include "controller.h"
 
-#define PERIOD 0.02 /* s, of the controller */
-#define SUBSTEPS 20 /* of the simulation in each */
-#define TIME 10.0   /* s */
-#define PI 3.141592653589793
-#define GOAL_TIME 2.5   /* s */
+#define PERIOD     0.02 /* s, of the controller */
+#define SUBSTEPS   20   /* of the simulation in each */
+#define TIME       10.0 /* s */
+#define PI         3.141592653589793
+#define GOAL_TIME  2.5  /* s */
 #define GOAL_ANGLE 0.15 /* rad, from upright, ever after */
-#define GOAL_RMS 0.05   /* rad, over the last half */
-#define GOAL_RAIL 0.6   /* m, to either side, always */
+#define GOAL_RMS   0.05 /* rad, over the last half */
+#define GOAL_RAIL  0.6  /* m, to either side, always */
 
 enum { SLIDE = 0, SWING = 1, NS = CART_POLE_NS };
 
@@ -59,7 +59,8 @@ int main(void) {
         up = fabs(off) > GOAL_ANGLE ? t + PERIOD : up;
         squares += 2 * k > periods ? off * off / (periods - periods / 2) : 0.0;
         farthest = fmax(farthest, fabs(x[SLIDE]));
-        for (int i = 0; i < NQ; ++i) { /* positions to 0.1 mm and mrad, rates with noise of 10 mm/s and mrad/s */
+        for (int i = 0; i < NQ;
+             ++i) { /* positions to 0.1 mm and mrad, rates with noise of 10 mm/s and mrad/s */
             q[i] = numerics_quantized(x[i], 1e-4);
             v[i] = x[NQ + i] + 0.01 * numerics_normal(&seed);
         }
