@@ -182,6 +182,9 @@ int numerics_lqr(int n, int m, const double A[], const double B[], const double 
                 P[i * n + j] = next;
             }
         }
+        if (!(largest < HUGE_VAL)) {
+            return 1; /* what u does not reach grows without end */
+        }
         if (change <= 1e-12 * largest) {
             return 0;
         }

@@ -10,7 +10,7 @@
 
 enum { SAMPLES = 256, HORIZON = 60, NQ = CART_POLE_NQ, NV = CART_POLE_NV };
 
-/* Some 190 kB, most of it room to compute in. */
+/* Some 150 kB, most of it room to compute in. */
 typedef struct {
     double model[CART_POLE_NK]; /* constants of the cart-pole as its model file has it */
     double plan[HORIZON];       /* N, the forces of the periods to come */
