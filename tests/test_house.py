@@ -72,6 +72,8 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("closed_programs", "edge_programs", "interpretation", "modelfile", "urdf"),
     ("prologue", "reading", "shared"),
     ("loop_slopes", "pivots", "tangent"),
+    ("slopes",),
+    ("closed_derivatives",),
     ("derivative_programs",),
     ("programs",),
     ("codegen", "trees"),
