@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from linegraph.closed_programs import independent, routine
 from linegraph.errors import ModelError
 from linegraph.program import Program, Result, Routine
-from linegraph.slopes import columns, matrix, variables
+from linegraph.slopes import columns, matrix, of_motion, variables
 
 if TYPE_CHECKING:
     from linegraph.shared import Functions
@@ -59,22 +59,19 @@ def linearize(f: Functions) -> tuple[Program | Routine, ...]:
 def _slopes(f: Functions) -> Program:
     """What is left of the equations at given a and lam, differentiated by changes of q, by v and by u."""
     jacobian, a, lam = f.jacobian, f.symbols("a"), f.symbols("lam")
-    force = [need - effort for need, effort in zip(f.required, f.driving, strict=True)]
+    less = list(f.driving)
     for row, multiplier in zip(jacobian, lam, strict=True):
-        force = [x - entry * multiplier for x, entry in zip(force, row, strict=True)]
+        less = [x + entry * multiplier for x, entry in zip(less, row, strict=True)]
     motion = [
         sum((entry * x for entry, x in zip(row, a, strict=True)), 0) - gam
         for row, gam in zip(jacobian, f.chords.bias(), strict=True)
     ]
     changes, velocities, inputs = variables(f)
     by = [*changes, *velocities, *inputs]
-    rates = f.chords.rates(f.v)
-    found = columns(f, [*force, *motion, *rates], by)
-    first, second = len(force), len(force) + len(motion)
     results = (
-        matrix("slopes_f", [column[:first] for column in found], "of M a - f - J^T lam"),
-        matrix("slopes_gam", [column[first:second] for column in found], "of J a - gam"),
-        matrix("slopes_rates", [x[second:] for x in found[: len(changes)]], "of J v - b"),
+        matrix("slopes_f", of_motion(f, f.carried, less, by), "of M a - f - J^T lam"),
+        matrix("slopes_gam", columns(f, motion, by), "of J a - gam"),
+        matrix("slopes_rates", columns(f, f.chords.rates(f.v), changes), "of J v - b"),
     )
     about = (
         "Derivatives of what is zero at the accelerations a and multipliers lam: by changes d of q along the "

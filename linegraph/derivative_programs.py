@@ -17,7 +17,7 @@ from linegraph.closed_programs import independent
 from linegraph.differentiation import substitution
 from linegraph.errors import ModelError
 from linegraph.factorization import factored, solve_many
-from linegraph.slopes import Columns, columns, matrix, turned, variables
+from linegraph.slopes import Columns, matrix, of_motion, turned, variables
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -33,7 +33,7 @@ ALONG = "by changes of q along the velocities, dq = N(q) d"
 def inverse_dynamics(f: Functions) -> tuple[Program | Routine, ...]:
     """∂τ/∂q, ∂τ/∂v and ∂τ/∂a = M."""
     changes, velocities, _ = variables(f)
-    found = columns(f, f.inverse_dynamics, [*changes, *velocities])
+    found = of_motion(f, f.passive, [0] * len(f.v), [*changes, *velocities])
     count = len(changes)
     results = (
         matrix("dtau_dq", found[:count], f"derivatives {ALONG}"),
@@ -94,7 +94,7 @@ def inverse_dynamics_by_parameters(f: Functions) -> tuple[Program | Routine, ...
         ModelError: its functions take no parameters.
     """
     names = _parameters(f)
-    results = (matrix("dtau_dp", columns(f, f.inverse_dynamics, names), _BY_PARAMETERS),)
+    results = (matrix("dtau_dp", of_motion(f, f.passive, [0] * len(f.v), names), _BY_PARAMETERS),)
     about = "Derivatives of inverse dynamics tau = M(q) a + h(q, v) by the parameters."
     given = ("q", "v", "a")
     return (f.program("inverse_dynamics_parameter_derivatives", about, given, results),)
@@ -147,8 +147,7 @@ def _require_open(f: Functions, instead: str = "") -> None:
 
 def _accelerations(f: Functions, by: Sequence[Symbol]) -> tuple[Columns, tuple[Check, ...]]:
     """The derivatives of a by each of some symbols, and what must not be zero for that."""
-    left = [need - effort for need, effort in zip(f.required, f.driving, strict=True)]
-    slopes = columns(f, left, by)
+    slopes = of_motion(f, f.carried, f.driving, by)
     f.dag.label = "right-hand side Q - h"
     right = [effort - h for effort, h in zip(f.driving, f.held, strict=True)]
     (a,), found_pivots = _solved(f, [right])

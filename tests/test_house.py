@@ -56,7 +56,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("expansion", "factorization", "spins", "walk"),
     ("orthogonality", "working_frames"),
     ("articulated", "frames", "mass_matrix"),
-    ("composite_bias", "rows"),
+    ("composite_bias", "composite_slopes", "rows"),
     ("closure",),
     ("scope", "search", "transfer"),
     ("loads",),
