@@ -24,8 +24,8 @@ _SIZES = {
     **dict.fromkeys(("dtau_dq", "da_dq"), ("NV", "NT")),
     **dict.fromkeys(("dtau_dv", "dtau_da", "da_dv"), ("NV", "NV")),
     "da_du": ("NV", "NU"),
-    "A": ("NX", "NX"),
-    "B": ("NX", "NU"),
+    "A": ("NDX", "NDX"),
+    "B": ("NDX", "NU"),
     **dict.fromkeys(("hr", "s", "w"), ("NI",)),
 }
 """The counts a reader expects as an array's extents; all others are plain numbers."""

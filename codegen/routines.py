@@ -23,6 +23,7 @@ HELPERS = {
     "complete": ("eliminate", "determined", "unit"),
     "reduction": ("eliminate", "determined"),
     "reduced_equations": (),
+    "linearization": ("eliminate", "constrained", "determined"),
     "after_dynamics": (),
     "rhs": (),
     "newton": ("eliminate", "norm"),

@@ -73,7 +73,7 @@ def _whole(f: Functions) -> Program:
     return f.program("constrained_equations", about, ("q", "v"), results, checks)
 
 
-def forward_dynamics(f: Functions) -> tuple[Program | Routine, ...]:
+def forward_dynamics(f: Functions) -> tuple[Routine, ...]:
     """v̇ and λ, by elimination of J with complete pivoting: redundant constraints drop out."""
     if not f.symmetric:
         problem = (
@@ -93,7 +93,7 @@ def forward_dynamics(f: Functions) -> tuple[Program | Routine, ...]:
     )
     statuses = (SINGULAR, NO_INERTIA, CONTRADICTION)
     return (
-        _routine(
+        routine(
             f,
             "forward_dynamics",
             about,
@@ -120,7 +120,7 @@ def project(f: Functions) -> tuple[Program | Routine, ...]:
     )
     calls = ("mass_matrix", *_phi_calls(f), "constraint_jacobian", "constraint_rates")
     return (
-        _routine(
+        routine(
             f,
             "project",
             about,
@@ -140,7 +140,7 @@ def reduction(f: Functions) -> tuple[Program | Routine, ...]:
         return ()  # states of networks are no coordinates to reduce to
     n, k = len(f.v), len(chosen)
     guess = "q, a guess of all coordinates near the position wanted, "
-    complete = _routine(
+    complete = routine(
         f,
         "complete",
         f"All of q and v from the independent coordinates s and their rates w: Newton from {guess}"
@@ -154,7 +154,7 @@ def reduction(f: Functions) -> tuple[Program | Routine, ...]:
         (NOT_CLOSED, NOT_DETERMINED),
         (*_phi_calls(f), "constraint_jacobian", "constraint_rates", "coordinate_rates"),
     )
-    tangent = _routine(
+    tangent = routine(
         f,
         "reduction",
         "Velocities and accelerations from the independent ones: v = T w (+ what is prescribed), "
@@ -168,7 +168,7 @@ def reduction(f: Functions) -> tuple[Program | Routine, ...]:
         (NOT_DETERMINED,),
         ("constraint_jacobian", "constraint_bias"),
     )
-    reduced = _routine(
+    reduced = routine(
         f,
         "reduced_equations",
         "Equations of motion in the independent coordinates, Mr wdot + hr = T^T Q: Mr = T^T M T, "
@@ -288,7 +288,7 @@ def freedoms_text(count: int) -> str:
     return f"{count} degree{'' if count == 1 else 's'} of freedom"
 
 
-def _routine(
+def routine(
     f: Functions,
     name: str,
     about: str,

@@ -12,51 +12,52 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph import network_programs, pivots, tangent
-from linegraph.differentiation import Calculus, substitution
+from linegraph import closed_derivatives, network_programs, pivots, tangent
+from linegraph.closed_programs import independent
+from linegraph.differentiation import substitution
+from linegraph.errors import ModelError
 from linegraph.factorization import factored, solve_many
-from linegraph.loop_slopes import loop_slopes
-from linegraph.program import Program, Result, Routine, reads
+from linegraph.slopes import Columns, matrix, of_motion, turned, variables
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from linegraph.differentiation import Symbol
-    from linegraph.program import Check
+    from linegraph.program import Check, Program, Routine
     from linegraph.shared import Functions
     from linegraph.vector import Scalar
-
-Columns = list[list["Scalar"]]
-"""Derivatives: a column for each symbol, with an entry for each scalar that is differentiated."""
 
 ALONG = "by changes of q along the velocities, dq = N(q) d"
 
 
 def inverse_dynamics(f: Functions) -> tuple[Program | Routine, ...]:
     """∂τ/∂q, ∂τ/∂v and ∂τ/∂a = M."""
-    changes, velocities, _ = _variables(f)
-    found = _columns(f, f.inverse_dynamics, [*changes, *velocities])
+    changes, velocities, _ = variables(f)
+    found = of_motion(f, f.passive, [0] * len(f.v), [*changes, *velocities])
     count = len(changes)
     results = (
-        _matrix("dtau_dq", found[:count], f"derivatives {ALONG}"),
-        _matrix("dtau_dv", found[count:], "derivatives by v"),
-        _matrix("dtau_da", _turned(f.mass_rows), "derivatives by a, which are M"),
+        matrix("dtau_dq", found[:count], f"derivatives {ALONG}"),
+        matrix("dtau_dv", found[count:], "derivatives by v"),
+        matrix("dtau_da", turned(f.mass_rows), "derivatives by a, which are M"),
     )
     about = "Derivatives of inverse dynamics tau = M(q) a + h(q, v)."
     return (f.program("inverse_dynamics_derivatives", about, ("q", "v", "a"), results),)
 
 
 def forward_dynamics(f: Functions) -> tuple[Program | Routine, ...]:
-    """∂a/∂q, ∂a/∂v and ∂a/∂u."""
-    if f.tree.closed:
-        return ()
-    changes, velocities, inputs = _variables(f)
+    """∂a/∂q, ∂a/∂v and ∂a/∂u.
+
+    Raises:
+        ModelError: the model has constraints.
+    """
+    _require_open(f, "; linearize gives them in the independent coordinates")
+    changes, velocities, inputs = variables(f)
     found, checks = _accelerations(f, [*changes, *velocities, *inputs])
     first, second = len(changes), len(changes) + len(velocities)
     results = (
-        _matrix("da_dq", found[:first], f"derivatives {ALONG}"),
-        _matrix("da_dv", found[first:second], "derivatives by v"),
-        *([_matrix("da_du", found[second:], "derivatives by u")] if inputs else []),
+        matrix("da_dq", found[:first], f"derivatives {ALONG}"),
+        matrix("da_dv", found[first:second], "derivatives by v"),
+        *([matrix("da_du", found[second:], "derivatives by u")] if inputs else []),
     )
     about = "Derivatives of forward dynamics a = M(q)^-1 (Q(u) - h(q, v))."
     return (f.program("forward_dynamics_derivatives", about, _STATE, results, checks, status=True),)
@@ -65,19 +66,19 @@ def forward_dynamics(f: Functions) -> tuple[Program | Routine, ...]:
 def linearize(f: Functions) -> tuple[Program | Routine, ...]:
     """A and B of ẋ = f(x, u) on the tangent space."""
     if f.tree.closed:
-        return ()
-    changes, velocities, inputs = _variables(f)
+        return closed_derivatives.linearize(f)
+    changes, velocities, inputs = variables(f)
     found, checks = _accelerations(f, [*changes, *velocities, *inputs])
     count = len(changes)
-    adjoint = _turned(tangent.adjoint(f.tree, f.v))
+    adjoint = turned(tangent.adjoint(f.tree, f.v))
     unit = [[int(i == k) for i in range(count)] for k in range(len(velocities))]
     above = [[-entry for entry in column] for column in adjoint] + unit
     above += [[0] * count for _ in inputs]
     whole: Columns = [[*top, *column] for top, column in zip(above, found, strict=True)]
     size = count + len(velocities)
     results = (
-        _matrix("A", whole[:size], "derivatives of xdot by x"),
-        *([_matrix("B", whole[size:], "derivatives of xdot by u")] if inputs else []),
+        matrix("A", whole[:size], "derivatives of xdot by x"),
+        *([matrix("B", whole[size:], "derivatives of xdot by u")] if inputs else []),
     )
     about = (
         "Linearisation at any state, at rest or moving: small changes follow dx' = A dx + B du with "
@@ -87,69 +88,66 @@ def linearize(f: Functions) -> tuple[Program | Routine, ...]:
 
 
 def inverse_dynamics_by_parameters(f: Functions) -> tuple[Program | Routine, ...]:
-    """∂τ/∂p."""
+    """∂τ/∂p.
+
+    Raises:
+        ModelError: its functions take no parameters.
+    """
     names = _parameters(f)
-    if not names:
-        return ()
-    results = (_matrix("dtau_dp", _columns(f, f.inverse_dynamics, names), _BY_PARAMETERS),)
+    results = (matrix("dtau_dp", of_motion(f, f.passive, [0] * len(f.v), names), _BY_PARAMETERS),)
     about = "Derivatives of inverse dynamics tau = M(q) a + h(q, v) by the parameters."
     given = ("q", "v", "a")
     return (f.program("inverse_dynamics_parameter_derivatives", about, given, results),)
 
 
 def forward_dynamics_by_parameters(f: Functions) -> tuple[Program | Routine, ...]:
-    """∂a/∂p."""
+    """∂a/∂p.
+
+    Raises:
+        ModelError: the model has constraints, or its functions take no parameters.
+    """
+    _require_open(f)
     names = _parameters(f)
-    if not names or f.tree.closed:
-        return ()
     found, checks = _accelerations(f, names)
-    results = (_matrix("da_dp", found, _BY_PARAMETERS),)
+    results = (matrix("da_dp", found, _BY_PARAMETERS),)
     about = "Derivatives of forward dynamics a = M(q)^-1 (Q(u) - h(q, v)) by the parameters."
     name = "forward_dynamics_parameter_derivatives"
     return (f.program(name, about, _STATE, results, checks, status=True),)
 
 
 def counts(f: Functions, chosen: Iterable[str]) -> tuple[tuple[str, int], ...]:
-    """How many changes of q there are, and of the whole state; and how many parameters."""
-    found: tuple[tuple[str, int], ...] = ()
-    if {"linearize", "inverse_dynamics_derivatives", "forward_dynamics_derivatives"} & {*chosen}:
-        count = len(tangent.changes(f.tree))
-        found = (("NT", count), ("NX", count + len(f.v)))
-    return found
+    """How many changes of q there are, and of the state that `linearize` speaks of."""
+    if not {"linearize", "inverse_dynamics_derivatives", "forward_dynamics_derivatives"} & {
+        *chosen
+    }:
+        return ()
+    count = len(tangent.changes(f.tree))
+    whole = 2 * len(independent(f)) if f.tree.closed else count + len(f.v)
+    return (("NT", count), ("NDX", whole))
 
 
 _STATE = ("q", "v", "u")
 _BY_PARAMETERS = "derivatives by the parameters, in their order"
 
 
-def _variables(f: Functions) -> tuple[list[Symbol], list[Symbol], list[Symbol]]:
-    """Changes of q, velocities and inputs."""
-    velocities: list[Symbol] = [("v", k) for k in range(f.sizes["v"])]
-    return tangent.changes(f.tree), velocities, [("u", k) for k in range(f.sizes["u"])]
-
-
 def _parameters(f: Functions) -> list[Symbol]:
     """The parameters that functions are given, in order."""
     if "p" not in f.head:
-        return []
+        problem = "its functions take no parameters, so there are no derivatives by them"
+        raise ModelError(f'model "{f.model.name}"', f"{problem}; keep them symbolic")
     return [("p", p.name) for p in f.model.parameters.values() if not p.derived]
 
 
-def _columns(f: Functions, given: Sequence[Scalar], by: Sequence[Symbol]) -> Columns:
-    """The derivatives of some scalars by each of some symbols."""
-    f.dag.label = "derivatives"
-    chain = tangent.chain(f.tree, f.dag, f.q)
-    if reads("loop", (Result("", (), tuple(given), ""),)):
-        chain |= loop_slopes(f, chain)
-    calculus = Calculus(f.dag, chain=chain)
-    found = [calculus.gradient(x) for x in given]
-    return [[slopes.get(symbol, 0) for slopes in found] for symbol in by]
+def _require_open(f: Functions, instead: str = "") -> None:
+    """Refuse constraints: what solves for a and lam decides as it runs."""
+    if f.tree.closed:
+        problem = "it has constraints, through whose solution accelerations are not differentiated"
+        raise ModelError(f'model "{f.model.name}"', problem + instead)
 
 
 def _accelerations(f: Functions, by: Sequence[Symbol]) -> tuple[Columns, tuple[Check, ...]]:
     """The derivatives of a by each of some symbols, and what must not be zero for that."""
-    left = [need - effort for need, effort in zip(f.required, f.driving, strict=True)]
-    slopes = _columns(f, left, by)
+    slopes = of_motion(f, f.carried, f.driving, by)
     f.dag.label = "right-hand side Q - h"
     right = [effort - h for effort, h in zip(f.driving, f.held, strict=True)]
     (a,), found_pivots = _solved(f, [right])
@@ -180,14 +178,3 @@ def _place_of_one(column: Sequence[Scalar]) -> int | None:
     """Where a column has its only entry, if that is 1."""
     used = [k for k, x in enumerate(column) if x != 0]
     return used[0] if len(used) == 1 and column[used[0]] == 1 else None
-
-
-def _turned(rows: Sequence[Sequence[Scalar]]) -> Columns:
-    """The columns of a matrix given by rows, or the other way round."""
-    return [list(column) for column in zip(*rows, strict=True)]
-
-
-def _matrix(name: str, columns: Columns, about: str) -> Result:
-    rows = _turned(columns)
-    entries = tuple(entry for row in rows for entry in row)
-    return Result(name, (len(rows), len(columns)), entries, about)

@@ -110,7 +110,7 @@ def _made(functions: Functions, keys: Iterable[str]) -> dict[str, tuple[Program 
         missing = called - {program.name for program in programs}
         if not missing:
             return made
-        others = [key for key in PROGRAMS if key not in made]
+        others = [key for key in PROGRAMS if key not in made and key not in ON_REQUEST]
         for key in [key for key in others if key in missing] or others:
             found = PROGRAMS[key](functions)
             if missing & {program.name for program in found}:

@@ -175,14 +175,10 @@ class Functions:
     @cached_property
     def inverse_dynamics(self) -> list[Scalar]:
         """``M a + h`` for accelerations as symbols, without M."""
-        return self._required(self.passive)
+        return self.required_by(self.passive)
 
-    @cached_property
-    def required(self) -> list[Scalar]:
-        """``M a`` and what acts at v̇ = 0, `carried`: what `driving` is to be equal to."""
-        return self.inverse_dynamics if self.affine else self._required(self.carried)
-
-    def _required(self, acting: Applied) -> list[Scalar]:
+    def required_by(self, acting: Applied) -> list[Scalar]:
+        """``M a + h``, h with what is `acting`, for accelerations as symbols."""
         a = self.symbols("a")
         return united_inverse_dynamics(
             self.short, self.dag, self.crossed, self.entries, a, self.rehoused(acting)

@@ -18,6 +18,7 @@ from pinocchio_models import robots_folder
 from linegraph import Model
 from linegraph.emission import module_for, render
 from linegraph.program import Program
+from linegraph.reading import read
 
 MOST = {
     # M and h together, M, h, inverse and forward dynamics when last measured, signs free; forward dynamics
@@ -27,6 +28,14 @@ MOST = {
     "solo12": (1417, 525, 1075, 1154, 2388),
     "anymal": (1467, 579, 1275, 1370, 2633),
     "talos": (5883, 3050, 3481, 3595, 7869),
+}
+SLOPES_MOST = {
+    # inverse_dynamics_derivatives, linearize; CasADi's Jacobians of Pinocchio's rnea and aba take 13589 and
+    # 23237 for the Panda, 4702 and 10077 for the UR5
+    "panda": (2558, 4537),
+    "ur5": (871, 1839),
+    "anymal": (4770, 18941),
+    "talos": (21333, 109186),
 }
 CHAINS_MOST = {10: 2929, 20: 7777, 40: 20427}
 PLANAR_MOST = 2059
@@ -101,6 +110,22 @@ def test_operations_of_known_robots(robot: str) -> None:
     found = tuple(counted[f"{robot}_{name}"] for name in FUNCTIONS)
     assert all(count <= most for count, most in zip(found, MOST[robot], strict=True)), found
     assert found[0] < found[1] + found[2]
+
+
+@pytest.mark.parametrize("robot", SLOPES_MOST)
+def test_operations_of_derivatives(robot: str) -> None:
+    folder = robots_folder()
+    if folder is None:
+        pytest.skip("the example-robot-data wheel is not installed")
+    file, base, locks = operations.WATCHED[robot]
+    model = read(folder / file, base=base)
+    for joint in locks:
+        model.lock(joint)
+    wanted = ("inverse_dynamics_derivatives", "linearize")
+    made = module_for(model, robot, folded=True, only=wanted).programs
+    found = {p.name: p.operations for p in made if isinstance(p, Program)}
+    pairs = zip(wanted, SLOPES_MOST[robot], strict=True)
+    assert all(found[name] <= most for name, most in pairs), found
 
 
 def test_operations_of_chains() -> None:

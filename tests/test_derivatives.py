@@ -6,19 +6,27 @@ numpy. So neither the DAG, nor the working frames, nor any rule of differentiati
 
 from __future__ import annotations
 
+import inspect
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 import random_systems
-from mixed_reference import Reference, lanes, rate
+from compiled import Compiled
+from emitted import load
+from mixed_reference import Lane, Reference, lanes, rate
 from test_random_mixed import case_of
 
-from linegraph import derive
+import linegraph as lg
+from linegraph import ModelError, derive
 from linegraph.algebra import Floats
 from linegraph.differentiation import Replay
+from linegraph.emission import render
+from linegraph.numeric import Numeric
+from linegraph.parameters import valued
 from linegraph.programs import PROGRAMS
 from linegraph.shared import Functions
 
@@ -27,6 +35,7 @@ if TYPE_CHECKING:
 
 Array = Any
 
+EXAMPLES = Path(__file__).parent.parent / "examples"
 STEP = 1e-30
 EXACT = 1e-12
 """Relative to 1 + the largest entry of the matrix; of accelerations times the condition of M, too."""
@@ -107,9 +116,9 @@ class Point:
         first, second = self.mechanical, self.mechanical + len(self.v)
         return found[:, :first], found[:, first:second], found[:, second:]
 
-    def call(self, name: str, **more: Array) -> list[Array]:
+    def call(self, name: str, *, folded: bool = True, **more: Any) -> list[Array]:
         """What the program gives: every result as an array."""
-        functions = Functions(self.derivation, folded=True)
+        functions = Functions(self.derivation, folded)
         (program,) = PROGRAMS[name](functions)
         given = {"t": self.t, "q": self.q, "v": self.v, "u": self.u, "loop": self.loop, **more}
 
@@ -198,3 +207,97 @@ def test_random_systems_with_networks(seed: int) -> None:
     case = case_of(seed, 1)
     r = case.reference
     compare(Point(r.derivation, float(r.t[0]), r.q[0], r.v[0], r.u[0]), case.rng)
+
+
+PARAMETRIC = (
+    "furuta",
+    "cart_pole_motor",
+    "double_pendulum",
+    "magnetic_levitation",
+    "elastic_pendulum",
+)
+
+
+@pytest.mark.parametrize("name", PARAMETRIC)
+def test_by_parameters(name: str) -> None:
+    """Every parameter in its own lane takes a small imaginary step."""
+    model = lg.read(EXAMPLES / name / f"{name}.toml")
+    derivation = derive(model)
+    tree = derivation.structure
+    names = [p.name for p in model.parameters.values() if not p.derived]
+    rng = np.random.default_rng(4)
+    q = rng.uniform(0.2, 1.0, len(tree.positions))
+    v, u = rng.normal(size=len(tree.velocities)), rng.normal(size=len(tree.inputs))
+    point = Point(derivation, 0.3, q, v, u)
+    moved = point.at(np.zeros((len(names), len(q) + len(v) + len(u)), complex))
+
+    def value(p: Any) -> Any:
+        found = np.full(len(names), complex(p.value))
+        if p.name in names:
+            found[names.index(p.name)] += 1j * STEP
+        return Lane(found)
+
+    algebra: Any = moved.algebra
+    values = valued(model.parameters.values(), algebra, value)
+    numeric = Numeric(derivation.tree(algebra, values), model, algebra, values, derivation)
+    moved.__dict__["numeric"] = numeric
+    a = rng.normal(size=len(v))
+    expected = np.imag(moved.inverse(np.tile(a, (len(names), 1)))).T / STEP
+    parameters = {p.name: float(p.value) for p in model.parameters.values()}
+    given = {"a": a, "p": parameters, "folded": False}
+    (found,) = point.call("inverse_dynamics_parameter_derivatives", **given)
+    assert error(found, expected) <= EXACT
+    (found,) = point.call("forward_dynamics_parameter_derivatives", **given)
+    mass = np.real(point.still.mass[0])
+    assert error(found, np.imag(moved.acceleration).T / STEP) <= EXACT * conditioned(mass)
+
+
+@pytest.mark.parametrize("name", ["furuta", "cart_pole_motor", "gyroscope", "ship_arm"])
+def test_emitted(name: str, tmp_path: Path) -> None:
+    """C and Python say the same, for one state and for many, and d.function asks for them."""
+    model = lg.read(EXAMPLES / name / f"{name}.toml")
+    wanted = ("linearize", "inverse_dynamics_derivatives", "forward_dynamics_derivatives")
+    files = render(model, folded=True, only=wanted)
+    emitted, compiled = load(files, model.name, tmp_path), Compiled(files, model.name, tmp_path)
+    rng = np.random.default_rng(5)
+    sizes = {"q": emitted.NQ, "v": emitted.NV, "u": emitted.NU, "a": emitted.NV}
+    many = {key: rng.uniform(0.1, 0.9, (3, size)) for key, size in sizes.items()}
+    many["t"] = np.full(3, 0.2)
+    for function in wanted:
+        python = getattr(emitted, function)
+        keys = list(inspect.signature(python).parameters)
+        found = python(*(many[key] for key in keys))
+        given = [float(many[key][1]) if key == "t" else many[key][1] for key in keys]
+        single = python(*given)
+        shapes = [x.shape for x in single]
+        for one, whole, in_c in zip(
+            single, found, compiled.call(function, *given, out=shapes), strict=True
+        ):
+            assert error(np.broadcast_to(whole, (3, *one.shape))[1], one) <= 1e-15
+            assert error(in_c, one) <= 1e-13
+    assert emitted.NDX == emitted.NT + emitted.NV
+    ask = derive(model).function("linearize")
+    A, _ = ask(many["q"][1], many["v"][1], many["u"][1]) if name == "furuta" else (None, None)
+    assert name != "furuta" or A.shape == (emitted.NDX, emitted.NDX)
+
+
+def test_long_loops_are_refused() -> None:
+    """Diodes between resistors behind a source: voltages that only Newton finds."""
+    model = lg.Model("ladder")
+    model.input("u", "V")
+    model.voltage_source("s", ("n0", "ground"), voltage="u")
+    for k in range(5):
+        model.resistor(f"R{k}", (f"n{k}", f"n{k + 1}"), resistance=1.0)
+        model.diode(f"D{k}", (f"n{k + 1}", "ground"), saturation=1e-3, voltage=0.5)
+    model.resistor("last", ("n5", "n6"), resistance=1.0)
+    model.capacitor("C", ("n6", "ground"), capacitance=1.0)
+    with pytest.raises(ModelError, match=r"algebraic loop of \d unknowns; derivatives"):
+        render(model, only=("linearize",))
+
+
+def test_what_has_no_derivatives_is_refused() -> None:
+    model = lg.read(EXAMPLES / "four_bar" / "four_bar.toml")
+    with pytest.raises(ModelError, match=r"it has constraints.*linearize gives them"):
+        render(model, only=("forward_dynamics_derivatives",))
+    with pytest.raises(ModelError, match=r"take no parameters.*keep them symbolic"):
+        render(model, folded=True, functions=("inverse_dynamics_parameter_derivatives",))
