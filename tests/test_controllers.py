@@ -100,6 +100,33 @@ def four_bar(log: Log) -> bool:
     )
 
 
+def impedance(log: Log) -> bool:
+    """The response of m x'' + d x' + k x = k x_d to a step, as every textbook has it."""
+    mass, damping, stiffness, wall = 6.0, 84.0, 600.0, 20000.0
+    t, natural = log["t"], math.sqrt(stiffness / mass)
+    ratio = damping / 2 / math.sqrt(stiffness * mass)
+    since, beats = np.maximum(t - 0.1, 0), natural * math.sqrt(1 - ratio**2)
+    swing = np.cos(beats * since) + ratio / math.sqrt(1 - ratio**2) * np.sin(beats * since)
+    done = 1 - np.exp(-ratio * natural * since) * swing
+    assert log["wanted_x"][-1] - log["wanted_x"][0] == pytest.approx(0.08)
+    off = [
+        log["y"] - log["wanted_y"][0] - 0.05 * done,
+        log["z"] - log["wanted_z"][0] + 0.03 * done,
+        (log["x"] - log["wanted_x"])[t < 1.5],
+    ]
+    late = t > 4.5
+    force = np.mean(log["force"][late])
+    spring = force / np.mean((log["wanted_x"] - log["x"])[late])
+    wanted = 0.03 * stiffness * wall / (stiffness + wall)
+    return bool(
+        max(np.max(np.abs(error)) for error in off) < 3e-3
+        and abs(force / wanted - 1) < 0.03
+        and abs(spring / stiffness - 1) < 0.03
+        and np.max(log["force"]) < 25
+        and np.max(log["turn"]) < 0.01
+    )
+
+
 def mpc(log: Log) -> bool:
     off = from_upright(log["swing"])
     assert np.max(np.abs(log["force"])) <= 8
@@ -121,6 +148,7 @@ GOALS: dict[str, Callable[[Log], bool]] = {
     "ekf": ekf,
     "four_bar": four_bar,
     "furuta": furuta,
+    "impedance": impedance,
     "mpc": mpc,
 }
 FIXED = set(GOALS) - {"mpc"}
