@@ -31,8 +31,21 @@ FUNCTIONS = (
     "drives",
     "power",
     "outputs",
+    "frames",
+    "center_of_mass",
+    "center_of_mass_velocity",
+    "center_of_mass_jacobian",
+    "momentum",
+    "centroidal_momentum_matrix",
+    "centroidal_momentum_bias",
+    "kinematics",
+    "operational_space",
+    "operational_position",
 )
 """What functions `emit` can be asked for."""
+
+ON_REQUEST = ("power", *FUNCTIONS[FUNCTIONS.index("center_of_mass") :])
+"""Those that are written on request only."""
 
 
 def with_options(options: tuple[Option, ...]) -> Option:
@@ -93,9 +106,22 @@ EMIT: tuple[Option, ...] = (
     click.option(
         "--with",
         "functions",
-        type=click.Choice(["power"]),
+        type=click.Choice(ON_REQUEST),
+        metavar="FUNCTION",
         multiple=True,
-        help="Further functions to write: power, the audit of through times across over all edges.",
+        help="Further functions to write; repeatable. power: the audit of through times across over all "
+        "edges. center_of_mass, center_of_mass_velocity, center_of_mass_jacobian, momentum, "
+        "centroidal_momentum_matrix, centroidal_momentum_bias: of all that moves. operational_space, "
+        "operational_position: Lambda, mu and Jbar of each --frame. kinematics: all of these but the last "
+        "two at once, as is written by itself where several are asked for.",
+    ),
+    click.option(
+        "--frame",
+        "frames",
+        metavar="BODY[.FRAME]",
+        multiple=True,
+        help="Write pose, velocity, Jacobian and its rate of a body's frame: a link of a URDF, or a body "
+        "or BODY.FRAME of a model file; repeatable.",
     ),
     click.option(
         "--only",

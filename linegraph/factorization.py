@@ -26,6 +26,22 @@ class Solution(NamedTuple):
     pivots: list[Scalar]
 
 
+class Reduced(NamedTuple):
+    """A factored matrix, and right-hand sides on the way to their solutions.
+
+    Attributes:
+        pivots: the diagonal of D.
+        rights: the right-hand sides, reduced: L^-T r of a symmetric M = L^T D L.
+        scaled: the same, divided by the pivots.
+        factor: of every coordinate its row of L below the diagonal.
+    """
+
+    pivots: list[Scalar]
+    rights: list[list[Scalar]]
+    scaled: list[list[Scalar]]
+    factor: list[dict[int, Scalar]]
+
+
 def solve(
     rows: Sequence[Sequence[Scalar]],
     right: Sequence[Scalar],
@@ -43,9 +59,23 @@ def solve(
     """
     if not symmetric:
         return _general(rows, right, outward)
-    size = len(right)
+    reduced = reduce(rows, [right], outward)
+    return Solution(substituted(reduced, reduced.scaled[0], outward), reduced.pivots)
+
+
+def reduce(
+    rows: Sequence[Sequence[Scalar]],
+    rights: Sequence[Sequence[Scalar]],
+    outward: Sequence[int],
+) -> Reduced:
+    """Factor a symmetric ``M = L^T D L`` and reduce right-hand sides.
+
+    With y = L^-T r of two of them, ``r1 . M^-1 r2 = y1 . D^-1 y2``.
+    """
+    size = len(rows)
     m = [list(row) for row in rows]
-    x = list(right)
+    xs = [list(right) for right in rights]
+    reduced: list[list[Scalar]] = [[0] * size for _ in xs]
     pivots: list[Scalar] = [0] * size
     factor: list[dict[int, Scalar]] = [{} for _ in range(size)]
     for place in reversed(range(size)):
@@ -59,12 +89,21 @@ def solve(
             for j in inner[: n + 1]:
                 m[i][j] = m[i][j] - factor[k][i] * m[k][j]
                 m[j][i] = m[i][j]
-            x[i] = x[i] - factor[k][i] * x[k]
-        x[k] = x[k] * inverse
+            for x in xs:
+                x[i] = x[i] - factor[k][i] * x[k]
+        for x, y in zip(xs, reduced, strict=True):
+            y[k] = x[k]
+            x[k] = x[k] * inverse
+    return Reduced(pivots, reduced, xs, factor)
+
+
+def substituted(reduced: Reduced, scaled: Sequence[Scalar], outward: Sequence[int]) -> list[Scalar]:
+    """The solution that belongs to a right-hand side that is reduced and divided by the pivots."""
+    x = list(scaled)
     for k in outward:
-        for i, entry in factor[k].items():
+        for i, entry in reduced.factor[k].items():
             x[k] = x[k] - entry * x[i]
-    return Solution(x, pivots)
+    return x
 
 
 def _general(

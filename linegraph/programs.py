@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from linegraph import closed_programs, edge_programs, network_programs, orthogonality
+from linegraph import (
+    closed_programs,
+    edge_programs,
+    kinematic_programs,
+    network_programs,
+    operational_programs,
+    orthogonality,
+)
 from linegraph.articulated import forward_dynamics
 from linegraph.errors import ModelError
 from linegraph.expression import Node
@@ -29,6 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from linegraph.derive import Derivation
+    from linegraph.tips import NamedFrame
     from linegraph.vector import Scalar
 
 
@@ -40,6 +48,7 @@ def module_of(
     about: Iterable[str],
     wanted: Iterable[str] = (),
     only: Iterable[str] = (),
+    frames: Iterable[NamedFrame] = (),
     prologue: bool = True,
 ) -> Module:
     """All functions of a model.
@@ -51,6 +60,7 @@ def module_of(
         about: paragraphs for the head of the file.
         wanted: further functions to emit, of `ON_REQUEST`.
         only: nothing but these of `PROGRAMS` and what they call; all if there are none.
+        frames: the frames whose kinematics are to be emitted.
         prologue: whether what parameters alone determine is hoisted into a function of its own.
 
     Raises:
@@ -58,13 +68,18 @@ def module_of(
             those asked for.
     """
     parameters = parameters_of(derivation)
-    functions = Functions(derivation, folded or not parameters)
     asked = (*only,) or (*(set(PROGRAMS) - set(ON_REQUEST)), *wanted)
+    frames = tuple(frames)
+    if not only:
+        asked = (*asked, *kinematic_programs.besides(asked, frames))
+    functions = Functions(derivation, folded or not parameters, frames, asked)
     made = _made(functions, [key for key in PROGRAMS if key in asked])
-    for key in only:
+    for key in (*only, *(key for key in wanted if key in OF_FRAMES)):
         if not made[key]:
             raise ModelError(
-                f'function "{key}"', "is none of this model: it has nothing of the kind"
+                f'function "{key}"',
+                "is none of this model: it has nothing of the kind"
+                f"{'; name a frame (--frame)' * (key in OF_FRAMES)}",
             )
     chosen = [key for key in PROGRAMS if key in made]
     programs = tuple(program for key in chosen for program in made[key])
@@ -279,10 +294,18 @@ PROGRAMS: dict[str, Maker] = {
     "drives": edge_programs.drives,
     "power": edge_programs.power,
     "outputs": edge_programs.outputs,
+    "frames": kinematic_programs.frames,
+    **{key: kinematic_programs.whole(key) for key in kinematic_programs.WHOLE},
+    "kinematics": kinematic_programs.kinematics,
+    "operational_space": operational_programs.operational_space,
+    "operational_position": operational_programs.operational_position,
 }
 """The register of emitted functions, in emitted order: what a user may ask for, and what makes them."""
 
-ON_REQUEST = ("power",)
+OF_FRAMES = ("frames", "operational_space", "operational_position")
+"""What there is of frames only."""
+
+ON_REQUEST = ("power", *OF_FRAMES, *kinematic_programs.WHOLE, "kinematics")
 """Emitted only where they are asked for."""
 
 
