@@ -10,6 +10,7 @@ from linegraph.errors import ModelError
 from linegraph.momenta import (
     center,
     center_columns,
+    center_velocity,
     momenta,
     momentum_columns,
     momentum_rate,
@@ -99,15 +100,24 @@ class Kinematics:
         f: what the model's functions share.
         frames: the frames.
         whole: whether masses matter.
+        turning: whether the frames' axes do.
     """
 
-    def __init__(self, f: Functions, frames: Sequence[NamedFrame], *, whole: bool = False) -> None:
+    def __init__(
+        self,
+        f: Functions,
+        frames: Sequence[NamedFrame],
+        *,
+        whole: bool = False,
+        turning: bool = True,
+    ) -> None:
         """Build the tree; the rest waits."""
         self._f = f
         resolve = resolver(f.dag, f.values)
         seats = [seat_of(f.model, f.tree, resolve, frame.name) for frame in frames]
-        self._tipped: Tipped = tipped(f.tree, seats, masses=whole)
+        self._tipped: Tipped = tipped(f.tree, seats, masses=whole, turning=turning)
         self._whole = whole
+        self._turning = turning
         self._tips = dict(zip((x.identifier for x in frames), self._tipped.tips, strict=True))
         self.view = self._seen(self._tipped.tree)
 
@@ -115,19 +125,17 @@ class Kinematics:
         f = self._f
         return Outlook(tree, f.dag, arms(tree, f.dag, f.q, f.v))
 
-    def has(self, frame: str) -> bool:
-        """Whether results of this frame can be had, or of the whole."""
-        return frame in self._tips if frame else self._whole
+    def has(self, result: str, frame: str) -> bool:
+        """Whether a result can be had, of a frame or of the whole."""
+        if not frame:
+            return self._whole
+        return frame in self._tips and (self._turning or result != "rotation")
 
     def ways(self, result: str, frame: str = "") -> list[tuple[Scalar, ...]]:
         """All ways to compute a result of `RESULTS`, of a frame or of the whole."""
         if frame:
             return self._of_frame(result, self._tips[frame])
         return self._of_whole[result]()
-
-    def shortest(self, result: str, frame: str = "") -> tuple[Scalar, ...]:
-        """That of the ways that takes the fewest operations by itself."""
-        return min(self.ways(result, frame), key=lambda way: _cost({(result, frame): way}))
 
     def _of_frame(self, result: str, tip: int) -> list[tuple[Scalar, ...]]:
         view = self.view
@@ -146,7 +154,10 @@ class Kinematics:
         rows = 3 * len(self._f.v)
         return {
             "com": lambda: list(centers),
-            "com_velocity": lambda: [total(found)[0] for found in self._center_columns],
+            "com_velocity": lambda: [
+                *(total(found)[0] for found in self._center_columns),
+                center_velocity(self._shares),
+            ],
             "Jcom": lambda: [self._flat(found)[:rows] for found in self._center_columns],
             "hg": lambda: [(*x, *y) for c in centers for x, y in momenta(view, c)],
             "Ag": lambda: [self._flat(momentum_columns(view, c)) for c in centers],
@@ -189,10 +200,10 @@ def frames(f: Functions) -> tuple[Program | Routine, ...]:
     """Pose, velocity, Jacobian and its rate of every frame that is asked for."""
     found = []
     for frame in f.frames:
-        own = Kinematics(f, (frame,))
+        own = both(f, (frame,))
         for function, results in OF_FRAMES.items():
             keys = [(result, frame.identifier) for result in results]
-            entries = _shortest([own], keys)
+            entries = shortest(own, keys)
             made = tuple(
                 _result(f, RENAMED.get(result, result), result, frame.name, entries[key])
                 for result, key in zip(results, keys, strict=True)
@@ -209,7 +220,7 @@ def whole(function: str) -> Callable[[Functions], tuple[Program | Routine, ...]]
     def make(f: Functions) -> tuple[Program | Routine, ...]:
         require_mass(f)
         result = OF_WHOLE[function]
-        entries = _shortest([Kinematics(f, (), whole=True)], [(result, "")])
+        entries = shortest([Kinematics(f, (), whole=True)], [(result, "")])
         made = _result(f, result, result, "", entries[(result, "")])
         given = ("q", "v") if result in ("com_velocity", "hg", "Agdot_v") else ("q",)
         return (f.program(function, ABOUT[function].format(_prescribed(f)), given, (made,)),)
@@ -229,10 +240,11 @@ def kinematics(f: Functions) -> tuple[Program | Routine, ...]:
         for result in results
     ]
     of_whole = [(OF_WHOLE[function], "") for function in functions]
-    together = _shortest([Kinematics(f, f.frames, whole=bool(functions))], [*of_frames, *of_whole])
-    apart = [Kinematics(f, (frame,)) for frame in f.frames]
+    keys = [*of_frames, *of_whole]
+    together = shortest(both(f, f.frames, whole=bool(functions)), keys)
+    apart = [source for frame in f.frames for source in both(f, (frame,))]
     apart += [Kinematics(f, (), whole=True)] if functions else []
-    found = min((together, _shortest(apart, [*of_frames, *of_whole])), key=_cost)
+    found = min((together, shortest(apart, keys)), key=_cost)
     names = {frame.identifier: frame.name for frame in f.frames}
     made = tuple(
         _result(f, f"{frame}_{result}" if frame else result, result, names.get(frame, ""), entries)
@@ -257,18 +269,23 @@ def require_mass(f: Functions) -> None:
         raise ModelError(f'model "{f.model.name}"', problem)
 
 
+def both(f: Functions, frames: Sequence[NamedFrame], *, whole: bool = False) -> list[Kinematics]:
+    """Kinematics with the frames' axes, and without them."""
+    return [Kinematics(f, frames, whole=whole), Kinematics(f, frames, turning=False)]
+
+
 Key = tuple[str, str]
 """A result and the frame it is of."""
 
 
-def _shortest(sources: Sequence[Kinematics], keys: Sequence[Key]) -> dict[Key, tuple[Scalar, ...]]:
+def shortest(sources: Sequence[Kinematics], keys: Sequence[Key]) -> dict[Key, tuple[Scalar, ...]]:
     """Every result in the way that adds the fewest operations to those before it.
 
     What others may be made of comes first.
     """
     chosen: dict[Key, tuple[Scalar, ...]] = {}
     for key in sorted(keys, key=lambda key: key[0] not in FIRST):
-        ways = [way for source in sources if source.has(key[1]) for way in source.ways(*key)]
+        ways = [way for source in sources if source.has(*key) for way in source.ways(*key)]
         costs = [_cost({**chosen, key: way}) for way in ways]
         chosen[key] = ways[costs.index(min(costs))]
     return {key: chosen[key] for key in keys}

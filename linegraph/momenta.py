@@ -59,12 +59,16 @@ def center_columns(view: Outlook) -> list[Column]:
     for i, (mass, first) in enumerate(carried):
         link, arm = view.tree.links[i], view.crossed[i]
         set_label(view.algebra, f"centre of mass, {link.caption}")
-        freedoms = link.velocities or (None,) * len(arm.rates)
-        motion = zip(freedoms, arm.rates, arm.motion.linear, arm.motion.angular, strict=True)
-        for freedom, rate, u, s in motion:
+        moved = zip(arm.motion.linear, arm.motion.angular, view.moved(i), strict=True)
+        for u, s, (freedom, rate, _, _) in moved:
             own = add(vector.scale(mass, u), cross(s, first))
             found.append(Column(freedom, rate, times(view.rotation(i), own), ZERO))
     return found
+
+
+def center_velocity(shares: Outlook) -> Vector:
+    """The velocity of the centre of mass, gathered from the leaves to the root."""
+    return _gathered(shares, [(push, ZERO) for push, _ in _own_momenta(shares)])[0]
 
 
 def momentum_columns(view: Outlook, c: Vector) -> list[Column]:
@@ -76,27 +80,56 @@ def momentum_columns(view: Outlook, c: Vector) -> list[Column]:
     """
     found = []
     carried = composites(view.tree, view.algebra, list(view.crossed))
+    apart = _apart(view)
     for i, (link, arm) in enumerate(zip(view.tree.links, view.crossed, strict=True)):
         set_label(view.algebra, f"momentum matrix, {link.caption}")
-        lever = subtract(view.frames[i].origin, c)
-        freedoms = link.velocities or (None,) * len(arm.rates)
-        motion = zip(freedoms, arm.rates, arm.motion.linear, arm.motion.angular, strict=True)
-        for freedom, rate, u, s in motion:
-            linear, angular = inertia_force(carried[i], s, u)
-            linear, angular = (times(view.rotation(i), x) for x in (linear, angular))
-            found.append(Column(freedom, rate, linear, add(angular, cross(lever, linear))))
+        origin = view.frames[i].origin
+        lever = subtract(origin, c)
+        own = zip(arm.motion.linear, arm.motion.angular, view.moved(i), strict=True)
+        for u_here, s_here, (freedom, rate, u, s) in own:
+            force, torque = inertia_force(carried[i], s_here, u_here)
+            linear = times(view.rotation(i), force)
+            angular = add(times(view.rotation(i), torque), cross(lever, linear))
+            for place, first in apart[i]:
+                angular = add(angular, cross(first, add(u, cross(s, subtract(place, origin)))))
+            found.append(Column(freedom, rate, linear, angular))
+    return found
+
+
+def _apart(view: Outlook) -> list[list[tuple[Vector, Vector]]]:
+    """Of each link those that it carries but does not turn: origin, and first moment of all they carry.
+
+    A composite has them as points at their origins, which is enough for forces along joints; their mass
+    centres lie elsewhere, which momentum about another point feels.
+    """
+    found: list[list[tuple[Vector, Vector]]] = [[] for _ in view.crossed]
+    if not view.tree.levelled:
+        return found
+    carried, _ = _firsts(view, level=False)
+    for k, arm in enumerate(view.crossed):
+        moment = view.frames[k].origin, times(view.rotation(k), carried[k][1])
+        for i in view.way(view.tree.links[k].parent if arm.level else -1):
+            found[i].append(moment)
+            if view.crossed[i].level:
+                break
     return found
 
 
 def momenta(view: Outlook, c: Vector) -> list[Twist]:
     """Ways to (P, L): by the columns of A, or every link's own, gathered from the leaves to the root."""
-    own = []
+    return [total(momentum_columns(view, c)), _about(c, _gathered(view, _own_momenta(view)))]
+
+
+def _own_momenta(view: Outlook) -> list[Twist]:
+    """Momentum of each link, and its moment about the link's origin, in the link's axes."""
+    found = []
     for link, arm, moving in zip(view.tree.links, view.crossed, view.velocities, strict=True):
         set_label(view.algebra, f"momentum, {link.caption}")
         (linear, angular), (mass, first, *_) = moving, arm.moments
         push = add(vector.scale(mass, linear), cross(angular, first))
-        own.append((push, add(applied_to(arm.moments.inertia, angular), cross(first, linear))))
-    return [total(momentum_columns(view, c)), _about(c, _gathered(view, own))]
+        turn = add(applied_to(arm.moments.inertia, angular), cross(first, linear))
+        found.append((push, turn))
+    return found
 
 
 def momentum_rate(view: Outlook, c: Vector) -> Twist:

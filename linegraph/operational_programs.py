@@ -17,7 +17,7 @@ from linegraph.algebra import Floats
 from linegraph.errors import ModelError
 from linegraph.expression import Node
 from linegraph.factorization import Reduced, reduce, substituted
-from linegraph.kinematic_programs import Kinematics
+from linegraph.kinematic_programs import both, shortest
 from linegraph.orthogonality import arms
 from linegraph.parameters import resolver, sample_values
 from linegraph.program import Argument, Call, Check, Program, Result, Routine
@@ -49,10 +49,9 @@ def _operational(f: Functions, frame: NamedFrame, function: str, rows: int) -> P
     _require_open(f, function)
     _require_rank(f, frame, function, rows)
     size = len(f.v)
-    view = Kinematics(f, (frame,))
-    (flat,) = view.ways("jacobian", frame.identifier)
+    keys = [(result, frame.identifier) for result in ("jacobian", "jacobian_dot_v")]
+    flat, rate = shortest(both(f, (frame,)), keys).values()
     J = [flat[i * size : (i + 1) * size] for i in range(rows)]
-    rate = view.shortest("jacobian_dot_v", frame.identifier)[:rows]
     call = _equations(f)
     h = [f.dag.symbol("h", i) for i in range(size)]
     M = [
@@ -70,7 +69,7 @@ def _operational(f: Functions, frame: NamedFrame, function: str, rows: int) -> P
     inverse = [substituted(known, column, last_first) for column in known.scaled]
     lam = [[inverse[max(i, j)][min(i, j)] for j in range(rows)] for i in range(rows)]
     f.dag.label = "forces at rest of the frame"
-    pulls = [row[rows] - x for row, x in zip(products, rate, strict=True)]
+    pulls = [row[rows] - x for row, x in zip(products, rate[:rows], strict=True)]
     mu = [_dot(row, pulls) for row in lam]
     f.dag.label = "J M^-1, back from the root to the leaves"
     solved = [substituted(reduced, x, outward) for x in reduced.scaled[:rows]]

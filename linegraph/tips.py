@@ -18,7 +18,7 @@ from linegraph.joints import Fixed
 from linegraph.joints.base import NO_MOMENTS
 from linegraph.kinematics import KinematicTree, Link, Seat, carried, compose, mass_center, resolved
 from linegraph.layout import Place
-from linegraph.rotation import IDENTITY_MATRIX, rotation_of
+from linegraph.rotation import IDENTITY_MATRIX, Rotation, rotation_of
 from linegraph.working_frames import DUST, shortened
 
 if TYPE_CHECKING:
@@ -91,7 +91,9 @@ def seat_of(
     return Seat(link, whole.at, whole.rotation)
 
 
-def tipped(tree: KinematicTree, seats: Sequence[Seat], *, masses: bool) -> Tipped:
+def tipped(
+    tree: KinematicTree, seats: Sequence[Seat], *, masses: bool, turning: bool = True
+) -> Tipped:
     """A tree for the kinematics of frames.
 
     Args:
@@ -99,6 +101,8 @@ def tipped(tree: KinematicTree, seats: Sequence[Seat], *, masses: bool) -> Tippe
         seats: the frames.
         masses: whether the centre of mass is asked for, or momentum; otherwise only the links on the ways
             to the frames are kept, without masses.
+        turning: whether the axes of the frames are asked for; otherwise they are any, and only the frames'
+            origins and velocities are right.
     """
     links = list(tree.links)
     mass: Scalar = sum((link.moments.mass for link in links), start=0)
@@ -111,15 +115,20 @@ def tipped(tree: KinematicTree, seats: Sequence[Seat], *, masses: bool) -> Tippe
             seat.link,
             Fixed("frame", ("", "")),
             True,
-            rotation_of(seat.rotation),
+            rotation_of(seat.rotation if turning else IDENTITY_MATRIX),
             seat.at,
             Place(),
             NO_MOMENTS,
         )
         for seat in seats
     ]
-    short = shortened(replace(tree, links=tuple(links)), whole=True)
+    short = shortened(replace(tree, links=tuple(links)), whole=True, turning=turning)
     tips = short.places[count:]
+    if not turning:
+        parts = list(short.tree.links)
+        for tip in tips:
+            parts[tip] = replace(parts[tip], rotation=Rotation())
+        return Tipped(replace(short.tree, links=tuple(parts)), tips)
     if not masses:
         return Tipped(short.tree, tips)
     return Tipped(short.tree, tips, mass, _resting(short.at_rest))

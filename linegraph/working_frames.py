@@ -94,12 +94,14 @@ class Shortened(NamedTuple):
         return found
 
 
-def shortened(tree: KinematicTree, *, whole: bool = False) -> Shortened:
+def shortened(tree: KinematicTree, *, whole: bool = False, turning: bool = True) -> Shortened:
     """The same M and h in fewer operations.
 
     Args:
         tree: the walk's.
         whole: keep also the moments that neither M nor h feels, so that the momentum is the same, too.
+        turning: whether links that are welded to others turn with them; otherwise only their origins and
+            their velocities are right, and their axes any.
     """
     if tree.levelled:
         # angles measured from ground leave no choice
@@ -115,7 +117,7 @@ def shortened(tree: KinematicTree, *, whole: bool = False) -> Shortened:
         moved = Placement(rotation_of(turns[k]).out(shifts[k]), turns[k])
         poses.append(compose(Placement(ZERO, turn.matrix()), moved, DUST))
     short, at_rest = _regrouped(replace(tree, links=tuple(links)), whole)
-    return Shortened(_stilled(short, children), apart.last, tuple(poses), at_rest)
+    return Shortened(_stilled(short, children, turning), apart.last, tuple(poses), at_rest)
 
 
 def _regrouped(
@@ -155,7 +157,9 @@ def _known(entries: Iterable[Scalar]) -> bool:
 # keeping still
 
 
-def _stilled(tree: KinematicTree, children: Sequence[Sequence[int]]) -> KinematicTree:
+def _stilled(
+    tree: KinematicTree, children: Sequence[Sequence[int]], turning: bool
+) -> KinematicTree:
     """Say of each link whether its working axes turn with it."""
     links = tree.links
     lengths = _lengths_in_plane(links)
@@ -163,7 +167,9 @@ def _stilled(tree: KinematicTree, children: Sequence[Sequence[int]]) -> Kinemati
     for i, link in enumerate(links):
         short = link.in_plane and lengths[i] < LONG
         if children[i]:
-            still = not short and all(parallel(links[c]) for c in children[i])
+            loose = (not turning and links[c].joint.freedoms == 0 for c in children[i])
+            pairs = zip(children[i], loose, strict=True)
+            still = not short and all(free or parallel(links[c]) for c, free in pairs)
         else:
             given = [x != 0 for x in (*link.moments.first, *link.moments.second)]
             still = all(given[:2]) if short else link.in_plane or sum(given) >= FULL
