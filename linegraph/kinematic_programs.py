@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,7 @@ from linegraph.momenta import (
 )
 from linegraph.orthogonality import arms
 from linegraph.parameters import resolver
-from linegraph.program import Program, Result, Routine, operations_of
+from linegraph.program import Program, Result, Routine, needed_for
 from linegraph.regularity import sample_tree
 from linegraph.tips import NamedFrame, Tipped, seat_of, tipped
 from linegraph.twists import (
@@ -88,6 +89,9 @@ OF_FRAMES = {
 OF_WHOLE = dict(zip(WHOLE, ("com", "com_velocity", "Jcom", "hg", "Ag", "Agdot_v"), strict=True))
 FIRST = ("position", "rotation", "jacobian", "com", "Ag", "Jcom")
 """What the other results may be made of."""
+
+SWEEPS = 4
+"""Results whose ways are chosen beside each other are gone through more than once."""
 
 RENAMED = {"jacobian": "J", "jacobian_dot_v": "Jdot_v"}
 """What a frame's results are called where they stand alone."""
@@ -279,20 +283,37 @@ Key = tuple[str, str]
 
 
 def shortest(sources: Sequence[Kinematics], keys: Sequence[Key]) -> dict[Key, tuple[Scalar, ...]]:
-    """Every result in the way that adds the fewest operations to those before it.
+    """Every result in one of its ways, so that all together take few operations.
 
-    What others may be made of comes first.
+    First each in the way that adds the fewest to those before it, what others may be made of before them;
+    then each once more beside all others, until none gains.
     """
+    ways = {
+        key: [
+            (way, needed_for(way))
+            for source in sources
+            if source.has(*key)
+            for way in source.ways(*key)
+        ]
+        for key in keys
+    }
     chosen: dict[Key, tuple[Scalar, ...]] = {}
-    for key in sorted(keys, key=lambda key: key[0] not in FIRST):
-        ways = [way for source in sources if source.has(*key) for way in source.ways(*key)]
-        costs = [_cost({**chosen, key: way}) for way in ways]
-        chosen[key] = ways[costs.index(min(costs))]
+    taken: dict[Key, frozenset[int]] = {}
+    uses: Counter[int] = Counter()
+    for _ in range(SWEEPS):
+        before = dict(taken)
+        for key in sorted(keys, key=lambda key: key[0] not in FIRST):
+            uses.subtract(taken.get(key, ()))
+            costs = [sum(not uses[node] for node in needed) for _, needed in ways[key]]
+            chosen[key], taken[key] = ways[key][costs.index(min(costs))]
+            uses.update(taken[key])
+        if taken == before:
+            break
     return {key: chosen[key] for key in keys}
 
 
 def _cost(found: dict[Key, tuple[Scalar, ...]]) -> int:
-    return operations_of(tuple(Result("x", (), entries, "") for entries in found.values()))
+    return len(needed_for(x for entries in found.values() for x in entries))
 
 
 def _result(f: Functions, name: str, kind: str, frame: str, entries: tuple[Scalar, ...]) -> Result:

@@ -212,7 +212,16 @@ def live_nodes(program: Program) -> list[Node]:
 
 def operations_of(results: tuple[Result, ...], checks: tuple[Check, ...] = ()) -> int:
     """Operations that results and checks take together; a change of sign is free."""
-    return sum(node.op not in (SYMBOL, NEG) for node in _live(_roots(results, checks)))
+    return len(_operations(_roots(results, checks)))
+
+
+def needed_for(entries: Iterable[Operand]) -> frozenset[int]:
+    """The indices of the operations that some entries take together."""
+    return frozenset(_operations([entry for entry in entries if isinstance(entry, Node)]))
+
+
+def _operations(roots: list[Node]) -> list[int]:
+    return [node.index for node in _live(roots) if node.op not in (SYMBOL, NEG)]
 
 
 def reads(argument: str, results: tuple[Result, ...]) -> bool:

@@ -134,18 +134,27 @@ def position(view: Outlook, tip: int) -> Vector:
 
 
 def columns(view: Outlook, tip: int) -> list[Column]:
-    """What every joint on the way to a frame adds to its velocity, from the frame inward."""
-    found = []
-    lever, turning = ZERO, True
-    for i in view.way(tip):
+    """What every joint on the way to a frame adds to its velocity, from the root outward."""
+    found: list[Column] = []
+    turning = True
+    for i, lever in _levers(view, tip):
         set_label(view.algebra, f"Jacobian, {view.tree.links[i].caption}")
-        for freedom, rate, u, s in view.moved(i):
-            linear = add(u, cross(s, lever))
-            found.append(Column(freedom, rate, linear, s if turning else ZERO))
-        if view.crossed[i].level:
-            lever, turning = ZERO, False
-        lever = add(lever, view.arm(i))
+        own = [
+            Column(freedom, rate, add(u, cross(s, lever)), s if turning else ZERO)
+            for freedom, rate, u, s in view.moved(i)
+        ]
+        found = own + found
+        turning = turning and not view.crossed[i].level
     return found
+
+
+def _levers(view: Outlook, tip: int) -> Iterator[tuple[int, Vector]]:
+    """The links from a frame to ground, and from each one's origin the place that its turning moves."""
+    lever = ZERO
+    for i in view.way(tip):
+        yield i, lever
+        set_label(view.algebra, f"place, {view.tree.links[i].caption}")
+        lever = add(ZERO if view.crossed[i].level else lever, view.arm(i))
 
 
 def matrix(found: Iterable[Column], size: int) -> list[list[Scalar]]:
@@ -180,9 +189,40 @@ def velocities(view: Outlook, tip: int) -> list[Twist]:
 
 
 def accelerations(view: Outlook, tip: int) -> list[Twist]:
-    """Ways to a frame's acceleration at v̇ = 0: along in ground axes, along in the links' own axes."""
+    """Ways to a frame's acceleration at v̇ = 0: in ground axes, in the links' own, from the columns."""
     frame = view.frames[tip]
-    return [(frame.pull, frame.spin), *_seen(view, tip, view.accelerations[tip])]
+    found = [(frame.pull, frame.spin), *_seen(view, tip, view.accelerations[tip])]
+    return found if view.tree.levelled else [*found, _by_products(view, tip)]
+
+
+def _by_products(view: Outlook, tip: int) -> Twist:
+    """A frame's acceleration at v̇ = 0 from what each joint adds to its velocity.
+
+    With w_i and σ_i what joint i adds to the velocity and to the angular velocity, and ω_i the sum of σ up to
+    it, these are the sums over all joints of
+
+        (ω_i + ω_(i-1)) x w_i        ω_(i-1) x σ_i
+
+    and of what the joints' own motions make of constant v, and what is prescribed.
+    """
+    linear = angular = turned = ZERO
+    for i, lever in reversed(list(_levers(view, tip))):
+        link, arm = view.tree.links[i], view.crossed[i]
+        set_label(view.algebra, f"products of velocities, {link.caption}")
+        push = spin = ZERO
+        before = turned
+        for _, rate, u, s in view.moved(i):
+            own = vector.scale(rate, s)
+            turned, spin = add(turned, own), add(spin, own)
+            push = add(push, vector.scale(rate, add(u, cross(s, lever))))
+        bias, pull = arm.motion.angular_bias, arm.motion.linear_bias
+        if arm.prescribed:
+            bias = add(bias, vector.combine(arm.prescribed, arm.motion.angular))
+            pull = add(pull, vector.combine(arm.prescribed, arm.motion.linear))
+        bias, pull = (times(view.rotation(i), x) for x in (bias, pull))
+        angular = add(angular, add(cross(before, spin), bias))
+        linear = add(linear, add(cross(add(turned, before), push), add(pull, cross(bias, lever))))
+    return linear, angular
 
 
 def _seen(view: Outlook, tip: int, own: Twist) -> list[Twist]:

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from emitted import load
 
+from codegen import naming
 from linegraph import ModelError, derive, urdf
 from linegraph.emission import render
 
@@ -133,6 +134,16 @@ class Peer:
         }
 
 
+def operational(
+    J: np.ndarray, rate: np.ndarray, M: np.ndarray, h: np.ndarray
+) -> tuple[tuple[np.ndarray, ...], float]:
+    """Lambda, mu and Jbar, and the condition of what Lambda is the inverse of."""
+    solved = np.linalg.solve(M, J.T)
+    inverse = J @ solved
+    found = np.linalg.inv(inverse)
+    return (found, found @ (solved.T @ h - rate), solved @ found), float(np.linalg.cond(inverse))
+
+
 def relative(found: np.ndarray, expected: np.ndarray) -> float:
     return float(np.max(np.abs(found - expected)) / max(np.max(np.abs(expected)), 1e-3))
 
@@ -166,7 +177,7 @@ def test_agrees_with_pinocchio(
         expected: list[np.ndarray] = []
         for frame in frames:
             truth = peer.frame(frame)
-            name = f"frame_{frame}"
+            name = f"frame_{naming.identifier(frame)}"
             position, rotation = getattr(module, f"{name}_pose")(q)
             note("position", position, truth["position"])
             note("rotation", rotation, truth["rotation"])
@@ -189,3 +200,34 @@ def test_agrees_with_pinocchio(
         row = "  ".join(f"{key} {value:.0e}" for key, value in worst.items())
         print(f"\n{file.stem:28s} {base:8s} nv {module.NV:3d}  {row}", end="")
     assert max(worst.values()) < TOLERANCE
+
+
+ARMS = (("panda", "panda_hand", 6), ("ur5_robot", "tool0", 6), ("solo12", "FL_FOOT", 3))
+
+
+@pytest.mark.parametrize(("stem", "frame", "rows"), ARMS)
+def test_operational_space_agrees_with_pinocchio(
+    stem: str, frame: str, rows: int, tmp_path: Path
+) -> None:
+    """At states well away from singular ones: both sides solve, with the condition of J M^-1 J^T."""
+    (file,) = (file for file in peers.urdf_files() if file.stem == stem)
+    model = urdf.read(file, snap=0.0)
+    pair = peers.bridge(file, model, floating=False)
+    function = {6: "operational_space", 3: "operational_position"}[rows]
+    files = render(
+        model, name="robot", folded=True, languages=["python"], only=[function], frames=[frame]
+    )
+    emitted = getattr(load(files, "robot", tmp_path), f"frame_{frame}_{function}")
+    rng = np.random.default_rng(2)
+    compared = 0
+    for _ in range(40):
+        q, v = pair.random_state(rng)
+        truth = Peer(pair, q, v).frame(frame)
+        J, rate = truth["jacobian"][:rows], truth["jacobian_dot_v"][:rows]
+        expected, condition = operational(J, rate, pair.mass_matrix(q), pair.bias(q, v))
+        if condition > 1e4:
+            continue
+        compared += 1
+        for result, there in zip(emitted(q, v), expected, strict=True):
+            assert relative(result, there) < TOLERANCE
+    assert compared > 10
