@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import inspect
 import re
+import runpy
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -234,6 +236,46 @@ def test_costs_of_an_arm() -> None:
     assert {name: n for name, n in MOST.items() if counts[name] > n} == {}
     hand = operations(urdf.read(PANDA), frames=("panda_hand",))
     assert hand["kinematics"] <= MOST_OF_HAND
+
+
+# ---- what the documentation says
+
+
+DOCUMENT = Path("docs/kinematics.md").read_text(encoding="utf-8")
+
+
+def test_functions_and_results_are_those_of_the_documentation() -> None:
+    """Every function, its arguments and its results, in the tables."""
+    module = module_for(wrist(), "m", frames=("link5.tip",), functions=EVERYTHING)
+    programs = {x.name: x for x in module.programs}
+    rows = re.findall(r"^\| `(\w+)` \| `([\w, ]+)` \| (.*) \|$", DOCUMENT, re.MULTILINE)
+    assert len(rows) == 12
+    for name, taken, results in rows:
+        program = programs[name.replace("NAME", "link5_tip")]
+        assert ", ".join(argument.name for argument in program.arguments) == taken
+        named = re.findall(r"`(\w+)`", results)
+        if named:
+            assert [result.name for result in program.results] == named
+
+
+def block(language: str) -> str:
+    return str(re.findall(rf"^```{language}\n(.*?)^```", DOCUMENT, re.MULTILINE | re.DOTALL)[0])
+
+
+def test_what_the_documentation_shows_runs(tmp_path: Path, monkeypatch: Any) -> None:
+    files = render(urdf.read(PANDA), name="panda", frames=("panda_hand",))
+    load(files, "panda", tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    given = {"q": np.full(8, 0.3), "v": np.ones(8), "wanted": np.zeros(6)}
+    (tmp_path / "shown.py").write_text(block("python"))
+    found = runpy.run_path(str(tmp_path / "shown.py"), given)
+    assert found["a"].shape == (8,)
+    shown = "\n".join(('#include "panda.h"', "int main(void) {", block("c"), "return 0; }"))
+    (tmp_path / "main.c").write_text(
+        shown.replace("{\ndouble", "{ const double q[8] = {0};\ndouble")
+    )
+    command = ["gcc", "-std=c99", "-Werror", "-c", "main.c", "-o", "main.o"]
+    subprocess.run(command, cwd=tmp_path, check=True)
 
 
 # ---- refusals
