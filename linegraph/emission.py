@@ -166,5 +166,5 @@ def _named(model: Model, frames: Iterable[str]) -> list[NamedFrame]:
     names = list(dict.fromkeys(frames))
     for name in names:
         require_frame(model, name)
-    called = naming.identifiers(names, "frame")
+    called = naming.identifiers(names, "frame", naming.stem)
     return [NamedFrame(*pair) for pair in zip(called, names, strict=True)]

@@ -5,14 +5,16 @@ With J the Jacobian of a frame and M v̇ + h = Q, a force F on the frame, Q = J�
     Λ a + μ = F        Λ = (J M⁻¹ Jᵀ)⁻¹        μ = Λ (J M⁻¹ h - J̇ v)        J̄ = M⁻¹ Jᵀ Λ
 
 With M = Lᵀ D L and y = L⁻ᵀ r of each right-hand side, J M⁻¹ Jᵀ and J M⁻¹ h are products of the y, so that
-only the columns of J̄ are substituted back.
+only the columns of J̄ are substituted back. With constraints all of this is said in independent velocities w,
+v = T w: J T stands for J, TᵀMT for M, and J̄ comes back to v by T.
 """
 
 from __future__ import annotations
 
 import random
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
+from linegraph import closed_programs
 from linegraph.algebra import Floats
 from linegraph.errors import ModelError
 from linegraph.expression import Node
@@ -45,69 +47,155 @@ def operational_position(f: Functions) -> tuple[Program | Routine, ...]:
     return tuple(_operational(f, frame, "operational_position", 3) for frame in f.frames)
 
 
+class _Dynamics(NamedTuple):
+    """What a frame's inertia is made of: M v̇ + h = Q in coordinates without constraints.
+
+    Attributes:
+        names: the velocities.
+        mass, bias: M and h.
+        outward: the velocities from the root to the leaves.
+        stored: from which on velocities are states of networks, whose share of M may be negative.
+        calls: what computes M and h, and all velocities for those of these coordinates.
+        spread: T of v = T w where these w are not all of v, and what T w leaves of v̇.
+    """
+
+    names: list[str]
+    mass: list[list[Scalar]]
+    bias: list[Scalar]
+    outward: Sequence[int]
+    stored: int
+    calls: tuple[Call, ...]
+    spread: tuple[list[list[Scalar]], list[Scalar]] | None = None
+
+
 def _operational(f: Functions, frame: NamedFrame, function: str, rows: int) -> Program:
-    _require_open(f, function)
+    dynamics = _closed(f, function, rows) if f.tree.closed else _open(f, function)
     _require_rank(f, frame, function, rows)
-    size = len(f.v)
-    keys = [(result, frame.identifier) for result in ("jacobian", "jacobian_dot_v")]
-    flat, rate = shortest(both(f, (frame,)), keys).values()
-    J = [flat[i * size : (i + 1) * size] for i in range(rows)]
-    call = _equations(f)
-    h = [f.dag.symbol("h", i) for i in range(size)]
-    M = [
-        [f.dag.symbol("M", i * size + j) if used else 0 for j, used in enumerate(row)]
-        for i, row in enumerate(f.pattern)
-    ]
+    J, rate = _motion(f, frame, rows, dynamics)
+    size = len(dynamics.bias)
     f.dag.label = "M = L^T D L from the leaves to the root"
-    outward = f.tree.outward
-    reduced = reduce(M, [*J, h], outward)
+    reduced = reduce(dynamics.mass, [*J, dynamics.bias], dynamics.outward)
     f.dag.label = "J M^-1 J^T and its inverse"
     products = [[_dot(a, b) for b in reduced.scaled] for a in reduced.rights[:rows]]
     inner = [row[:rows] for row in products]
+    # the rows of translation first: what is eliminated last depends on all others
     last_first = range(rows)[::-1]
     known = reduce(inner, _unit(rows), last_first)
     inverse = [substituted(known, column, last_first) for column in known.scaled]
     lam = [[inverse[max(i, j)][min(i, j)] for j in range(rows)] for i in range(rows)]
-    f.dag.label = "forces at rest of the frame"
-    pulls = [row[rows] - x for row, x in zip(products, rate[:rows], strict=True)]
+    f.dag.label = "forces that keep the frame's velocity"
+    pulls = [row[rows] - x for row, x in zip(products, rate, strict=True)]
     mu = [_dot(row, pulls) for row in lam]
-    f.dag.label = "J M^-1, back from the root to the leaves"
-    solved = [substituted(reduced, x, outward) for x in reduced.scaled[:rows]]
+    f.dag.label = "M^-1 J^T, back from the root to the leaves"
+    solved = [substituted(reduced, x, dynamics.outward) for x in reduced.scaled[:rows]]
     bar = [[_dot([x[k] for x in solved], row) for row in lam] for k in range(size)]
+    if dynamics.spread is not None:
+        bar = _product(dynamics.spread[0], bar)
     results = (
         Result("Lambda", (rows, rows), _flat(lam), f'inertia of "{frame.name}"'),
-        Result("mu", (rows,), tuple(mu), "forces that keep it from accelerating without others"),
-        Result("Jbar", (size, rows), _flat(bar), "inverse of J that inertia weighs"),
+        Result("mu", (rows,), tuple(mu), "the force on it under which its velocity stays"),
+        Result("Jbar", (len(f.v), rows), _flat(bar), "inverse of J, weighted by inertia"),
     )
+    checks = (*_checks_of_mass(f, reduced, dynamics), *_checks_of_frame(f, frame, known, inner))
+    given = [x for call in dynamics.calls for x in call.arguments if x not in f.head]
+    name = f"frame_{frame.identifier}_{function}"
+    about = _about(frame, rows, closed=f.tree.closed)
+    arguments = tuple(dict.fromkeys(given))
+    return f.program(name, about, arguments, results, checks, dynamics.calls, status=True)
+
+
+def _about(frame: NamedFrame, rows: int, *, closed: bool) -> str:
+    """What a function says of itself."""
     what = "the frame" if rows == 6 else "the origin of the frame"
-    about = (
+    text = (
         f'Operational space of {what} "{frame.name}": Lambda = (J M^-1 J^T)^-1, '
         "mu = Lambda (J M^-1 h - Jdot_v), Jbar = M^-1 J^T Lambda; a force F on it has "
         "Lambda a + mu = F."
     )
-    given = tuple(x for x in call.arguments if x not in f.head)
-    name = f"frame_{frame.identifier}_{function}"
-    checks = (*_checks_of_mass(f, reduced, M), *_checks_of_frame(f, frame, known, inner))
-    return f.program(name, about, given, results, checks, (call,), status=True)
+    loops = (
+        " All on the motions that the constraints allow: J stands for J T, M and h for Mr and hr."
+    )
+    return text + loops * closed
 
 
-def _equations(f: Functions) -> Call:
-    """The call for M and h."""
+def _motion(
+    f: Functions, frame: NamedFrame, rows: int, dynamics: _Dynamics
+) -> tuple[list[list[Scalar]], list[Scalar]]:
+    """J in the coordinates of `dynamics`, and the rate of the frame's velocity where these are constant."""
+    size = len(f.v)
+    keys = [(result, frame.identifier) for result in ("jacobian", "jacobian_dot_v")]
+    flat, rate = shortest(both(f, (frame,)), keys).values()
+    J = [list(flat[i * size : (i + 1) * size]) for i in range(rows)]
+    if dynamics.spread is None:
+        return J, list(rate[:rows])
+    T, rest = dynamics.spread
+    return _product(J, T), [x + _dot(row, rest) for x, row in zip(rate[:rows], J, strict=True)]
+
+
+def _open(f: Functions, function: str) -> _Dynamics:
+    """Of a tree: `equations`.
+
+    Raises:
+        ModelError: the mass matrix is not symmetric.
+    """
+    if not f.symmetric:
+        raise _refused(f, function, "its controlled sources make the mass matrix unsymmetric")
     size = len(f.v)
     local = (Argument("M", size * size, "mass matrix"), Argument("h", size, "bias"))
     made = f.program("equations", "", ("q", "v"), (f.mass_matrix, f.bias_beside_mass))
-    return Call("equations", tuple(argument.name for argument in made.arguments), local)
+    call = Call("equations", tuple(argument.name for argument in made.arguments), local)
+    mass: list[list[Scalar]] = [
+        [f.dag.symbol("M", i * size + j) if used else 0 for j, used in enumerate(row)]
+        for i, row in enumerate(f.pattern)
+    ]
+    names = [quantity.name for quantity in f.tree.velocities]
+    bias = _vector(f, "h", size)
+    return _Dynamics(names, mass, bias, f.tree.outward, f.tree.layout.mechanical, (call,))
 
 
-def _checks_of_mass(f: Functions, reduced: Reduced, M: list[list[Scalar]]) -> list[Check]:
+def _closed(f: Functions, function: str, rows: int) -> _Dynamics:
+    """With constraints: `reduction` and `reduced_equations`.
+
+    Raises:
+        ModelError: there are none, or too few independent velocities.
+    """
+    made = {program.name: program for program in closed_programs.reduction(f)}
+    if not made:
+        problem = "it has constraints, and its equations are not reduced to independent coordinates"
+        raise _refused(f, function, problem)
+    names = [f.tree.velocities[v].name for _, v in closed_programs.independent(f)]
+    k, n = len(names), len(f.v)
+    if k < rows:
+        left = "1 independent velocity" if k == 1 else f"{k} independent velocities"
+        problem = f"its constraints leave {left}, fewer than the {rows} rows"
+        raise _refused(f, function, problem)
+    local = {
+        "reduction": (Argument("T", n * k, "v for unit w"), Argument("rest", n, "rest of vdot")),
+        "reduced_equations": (Argument("Mr", k * k, "mass matrix"), Argument("hr", k, "bias")),
+    }
+    calls = tuple(
+        Call(name, tuple(argument.name for argument in made[name].arguments), arrays)
+        for name, arrays in local.items()
+    )
+    spread = _matrix(f, "T", n, k), _vector(f, "rest", n)
+    mass, bias = _matrix(f, "Mr", k, k), _vector(f, "hr", k)
+    return _Dynamics(names, mass, bias, range(k), k, calls, spread)
+
+
+def _refused(f: Functions, function: str, problem: str) -> ModelError:
+    return ModelError(f'model "{f.model.name}"', f"{problem}: {function} cannot be emitted for it")
+
+
+def _checks_of_mass(f: Functions, reduced: Reduced, dynamics: _Dynamics) -> list[Check]:
     checks = []
     for i, pivot in enumerate(reduced.pivots):
         # what a network stores may be negative; inertia may not
-        stored = i >= f.tree.layout.mechanical
+        stored = i >= dynamics.stored
         size = f.dag.function("abs", pivot) if stored else pivot
+        entry = dynamics.mass[i][i]
         if isinstance(size, Node):
-            bound = 0 if stored or pivot is M[i][i] else SINGULAR * M[i][i]
-            about = f"the mass matrix is singular at {f.tree.velocities[i].name}"
+            bound = 0 if stored or pivot is entry else SINGULAR * entry
+            about = f"the mass matrix is singular at {dynamics.names[i]}"
             checks.append(Check(size, bound, i + 1, about))
     return checks
 
@@ -118,29 +206,10 @@ def _checks_of_frame(
     checks = []
     for i, pivot in enumerate(known.pivots):
         if isinstance(pivot, Node):
-            bound = SINGULAR * inner[i][i]
+            bound = 0 if pivot is inner[i][i] else SINGULAR * inner[i][i]
             about = f'the frame "{frame.name}" cannot move {DIRECTIONS[i]} by itself here'
             checks.append(Check(pivot, bound, len(f.v) + i + 1, about))
     return checks
-
-
-def _require_open(f: Functions, function: str) -> None:
-    """Refuse where M alone does not say how a frame is moved.
-
-    Raises:
-        ModelError: there are constraints, or the mass matrix is not symmetric.
-    """
-    problem = ""
-    if f.tree.closed:
-        problem = (
-            "the inertia of a frame depends on its loops and constraints, which are left out there"
-        )
-    if not f.symmetric:
-        problem = "its controlled sources make the mass matrix unsymmetric"
-    if problem:
-        raise ModelError(
-            f'model "{f.model.name}"', f"{problem}: {function} cannot be emitted for it"
-        )
 
 
 def _require_rank(f: Functions, frame: NamedFrame, function: str, rows: int) -> None:
@@ -193,6 +262,20 @@ def _dot(a: Sequence[Scalar], b: Sequence[Scalar]) -> Scalar:
     for x, y in zip(a, b, strict=True):
         found = found + x * y
     return found
+
+
+def _product(a: Sequence[Sequence[Scalar]], b: Sequence[Sequence[Scalar]]) -> list[list[Scalar]]:
+    columns = list(zip(*b, strict=True))
+    return [[_dot(row, column) for column in columns] for row in a]
+
+
+def _matrix(f: Functions, name: str, rows: int, columns: int) -> list[list[Scalar]]:
+    """A local array of a program as rows."""
+    return [[f.dag.symbol(name, i * columns + j) for j in range(columns)] for i in range(rows)]
+
+
+def _vector(f: Functions, name: str, size: int) -> list[Scalar]:
+    return [f.dag.symbol(name, i) for i in range(size)]
 
 
 def _unit(size: int) -> list[list[Scalar]]:

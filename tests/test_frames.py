@@ -177,7 +177,7 @@ def test_agrees_with_pinocchio(
         expected: list[np.ndarray] = []
         for frame in frames:
             truth = peer.frame(frame)
-            name = f"frame_{naming.identifier(frame)}"
+            name = f"frame_{naming.stem(frame)}"
             position, rotation = getattr(module, f"{name}_pose")(q)
             note("position", position, truth["position"])
             note("rotation", rotation, truth["rotation"])
