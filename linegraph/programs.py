@@ -70,6 +70,9 @@ def module_of(
     parameters = parameters_of(derivation)
     asked = (*only,) or (*(set(PROGRAMS) - set(ON_REQUEST)), *wanted)
     frames = tuple(frames)
+    if frames and only and not {"kinematics", *OF_FRAMES} & set(asked):
+        problem = f"nothing of it is asked for: {', '.join(OF_FRAMES)} or kinematics would be"
+        raise ModelError(f'frame "{frames[0].name}"', problem)
     if not only:
         asked = (*asked, *kinematic_programs.besides(asked, frames))
     functions = Functions(derivation, folded or not parameters, frames, asked)

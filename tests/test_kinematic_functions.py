@@ -198,6 +198,17 @@ def test_many_states_at_once(tmp_path: Path) -> None:
             np.testing.assert_allclose(x[k], y, rtol=1e-9, atol=1e-11)
 
 
+def test_what_is_welded_to_ground_is_a_frame_too(tmp_path: Path) -> None:
+    model = urdf.read(PANDA)
+    files = render(model, name="m", frames=("panda_link0",))
+    compiled, module = Compiled(files, "m", tmp_path), load(files, "m", tmp_path)
+    position, rotation = compiled.call("frame_panda_link0_pose", np.ones(8), out=[(3,), (3, 3)])
+    assert not position.any()
+    assert np.array_equal(rotation, np.eye(3))
+    assert not compiled.call("frame_panda_link0_jacobian", np.ones(8), out=[(6, 8)]).any()
+    assert not module.frame_panda_link0_jacobian_dot_v(np.ones(8), np.ones(8)).any()
+
+
 # ---- singular positions
 
 
@@ -304,6 +315,7 @@ def test_what_the_documentation_shows_runs(tmp_path: Path, monkeypatch: Any) -> 
         (("--frame", "a\nb{{7*7}}"), ("is no body and no frame of one",)),
         (("--with", "operational_space"), ('function "operational_space"', "--frame")),
         (("--only", "frames"), ('function "frames"', "--frame")),
+        (("--only", "bias", "--frame", "panda_hand"), ('frame "panda_hand"', "nothing of it is")),
         (("--with", "momenta"), ("momenta",)),
     ],
 )
