@@ -129,7 +129,16 @@ def module_for(
     only: Iterable[str] = (),
     frames: Iterable[str] = (),
 ) -> Module:
-    """The program of every function of a model: what operation counts are taken from."""
+    """The program of every function of a model: what operation counts are taken from.
+
+    Example:
+        >>> from linegraph import Model
+        >>> model = Model("pendulum")
+        >>> bob = model.body("bob", mass=2.0, mass_center=(0, 0, -0.5))
+        >>> _ = model.revolute("hinge", between=("ground", bob), axis=(0, 1, 0))
+        >>> module_for(model, "m", only=("frames", "center_of_mass"), frames=("bob",)).programs[:2]
+        (<program frame_bob_pose(q): 2 operations>, <program frame_bob_velocity(q, v): 0 operations>)
+    """
     about = [f"Equations of motion of {model.name}, derived by linegraph {__version__}."]
     about += [text for text in (model.about,) if text]
     wanted, few = tuple(functions), tuple(only)

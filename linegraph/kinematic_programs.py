@@ -318,8 +318,9 @@ def _cost(found: dict[Key, tuple[Scalar, ...]]) -> int:
 
 def _result(f: Functions, name: str, kind: str, frame: str, entries: tuple[Scalar, ...]) -> Result:
     shape, about = RESULTS[kind]
+    counts = tuple("NV" if size < 0 else "" for size in shape)
     shape = tuple(len(f.v) if size < 0 else size for size in shape)
-    return Result(name, shape, entries, about.format(f'"{frame}"'))
+    return Result(name, shape, entries, about.format(f'"{frame}"'), counts)
 
 
 def _prescribed(f: Functions) -> str:

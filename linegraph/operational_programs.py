@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from linegraph.tips import NamedFrame
     from linegraph.vector import Scalar
 
+BAR = "inverse of J, weighted by inertia"
 DIRECTIONS = ("along x", "along y", "along z", "about x", "about y", "about z")
 
 
@@ -94,7 +95,7 @@ def _operational(f: Functions, frame: NamedFrame, function: str, rows: int) -> P
     results = (
         Result("Lambda", (rows, rows), _flat(lam), f'inertia of "{frame.name}"'),
         Result("mu", (rows,), tuple(mu), "the force on it under which its velocity stays"),
-        Result("Jbar", (len(f.v), rows), _flat(bar), "inverse of J, weighted by inertia"),
+        Result("Jbar", (len(f.v), rows), _flat(bar), BAR, ("NV", "")),
     )
     checks = (*_checks_of_mass(f, reduced, dynamics), *_checks_of_frame(f, frame, known, inner))
     given = [x for call in dynamics.calls for x in call.arguments if x not in f.head]

@@ -42,12 +42,18 @@ class Argument:
 
 @dataclass(frozen=True)
 class Result:
-    """What a function returns: a dense array, its `entries` row-major."""
+    """What a function returns: a dense array, its `entries` row-major.
+
+    Attributes:
+        counts: for each extent the count it is called by, ``NV`` say, or nothing; none where the name of the
+            result says it.
+    """
 
     name: str
     shape: tuple[int, ...]
     entries: tuple[Operand, ...]
     about: str
+    counts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -263,6 +263,16 @@ def test_costs_of_an_arm() -> None:
     assert hand["kinematics"] <= MOST_OF_HAND
 
 
+def test_extents_are_called_by_what_they_count() -> None:
+    """Also where a model has six constraints, so that 6 might be read as their number."""
+    model = modelfile.read(LOOP)
+    name = next(iter(model.bodies))
+    header = render(model, name="m", languages=["c"], frames=(name,), functions=WHOLE)["m.h"]
+    for text in ("J[M_RESTRICT 6 * M_NV]", "Jcom[M_RESTRICT 3 * M_NV]", "Ag[M_RESTRICT 6 * M_NV]"):
+        assert text in header
+    assert "J (6 x NV, row-major)" in header
+
+
 # ---- what the documentation says
 
 

@@ -18,12 +18,16 @@ import pytest
 import random_mixed as mixed
 import random_systems as systems
 import random_trees as trees
+from dag_values import values
 from emitted import load
 from spec_models import model_of as tree_model
 from test_closed_loops import model_of as closed_model
 
 from linegraph import ModelError, derive, modelfile
 from linegraph.emission import render
+from linegraph.kinematic_programs import OF_FRAMES, RESULTS, both
+from linegraph.shared import Functions
+from linegraph.tips import NamedFrame
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -43,6 +47,7 @@ WHOLE = (
     "centroidal_momentum_matrix",
     "centroidal_momentum_bias",
 )
+OF_FRAME = [result for results in OF_FRAMES.values() for result in results]
 FOURTH = {-2: 1 / 12, -1: -8 / 12, 1: 8 / 12, 2: -1 / 12}
 """Weights of a difference of the fourth order."""
 
@@ -454,3 +459,26 @@ def test_results_are_derivatives_of_each_other(seed: int, coordinates: str, tmp_
     together = call(module, "kinematics", given)
     for found, alone in zip(together, here.values(), strict=True):
         assert error(found, alone) < EXACT
+
+
+# ---- the ways among which the shortest is chosen
+
+
+@pytest.mark.parametrize("coordinates", ["joint", "absolute", "absolute-angle"])
+@pytest.mark.parametrize("seed", [1, 6, 12])
+def test_all_ways_lead_to_the_same(seed: int, coordinates: str) -> None:
+    """Whichever is emitted: by columns, in ground axes, in the links' own, with and without the axes."""
+    model = closed_model(closed.random_system(seed), "model")
+    model.formulation(coordinates=coordinates)
+    frame = NamedFrame("last", next(reversed(model.bodies)))
+    f = Functions(derive(model), True, (frame,))
+    sources = [*both(f, (frame,)), *both(f, (frame,), whole=True)]
+    draw = np.random.default_rng(seed)
+    q, v = draw.normal(size=len(f.q)).tolist(), draw.normal(size=len(f.v)).tolist()
+    f.tree.normalise(q)
+    for result in RESULTS:
+        key = (result, "last" if result in OF_FRAME else "")
+        ways = [way for source in sources if source.has(*key) for way in source.ways(*key)]
+        found = [values(way, {"q": q, "v": v}) for way in ways]
+        assert len(found) >= 2
+        assert max(error(other, found[0]) for other in found[1:]) < EXACT, result
