@@ -28,24 +28,57 @@ from linegraph.tips import seat_of, tipped
 from linegraph.twists import Outlook, columns, matrix
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from linegraph.shared import Functions
     from linegraph.tips import NamedFrame
     from linegraph.vector import Scalar
 
 BAR = "inverse of J, weighted by inertia"
+ROWS = {"operational_space": 6, "operational_position": 3}
+"""How many rows of the Jacobian count."""
+
 DIRECTIONS = ("along x", "along y", "along z", "about x", "about y", "about z")
 
 
 def operational_space(f: Functions) -> tuple[Program | Routine, ...]:
-    """Λ, μ and J̄ of all six rows of each frame's Jacobian."""
-    return tuple(_operational(f, frame, "operational_space", 6) for frame in f.frames)
+    """Λ, μ and J̄ of all six rows of the Jacobian of each frame that can move in all directions."""
+    return _of_frames(f, "operational_space")
 
 
 def operational_position(f: Functions) -> tuple[Program | Routine, ...]:
     """The same of the three linear rows: what an arm of few joints can move."""
-    return tuple(_operational(f, frame, "operational_position", 3) for frame in f.frames)
+    return _of_frames(f, "operational_position")
+
+
+def remarks(f: Functions, chosen: Iterable[str]) -> tuple[str, ...]:
+    """What the head of a file says of frames that have not all functions that are asked for."""
+    chosen = set(chosen)
+    return tuple(
+        f'There is no {function} of the frame "{frame.name}": it {problem}.'
+        for function in ROWS
+        if function in chosen
+        for frame in f.frames
+        if (problem := _immobile(f, frame, ROWS[function]))
+    )
+
+
+def _of_frames(f: Functions, function: str) -> tuple[Program, ...]:
+    """One for each frame that can move so; the head of the file tells of the others.
+
+    Raises:
+        ModelError: none can, or the model has no such function.
+    """
+    if not f.frames:
+        return ()
+    dynamics = _closed(f, function) if f.tree.closed else _open(f, function)
+    problems = {frame: _immobile(f, frame, ROWS[function]) for frame in f.frames}
+    able = [frame for frame, problem in problems.items() if not problem]
+    if not able:
+        frame, problem = next(iter(problems.items()))
+        fewer = "; operational_position may do" * (function == "operational_space")
+        raise ModelError(f'frame "{frame.name}"', f"{problem}: no {function} of it{fewer}")
+    return tuple(_operational(f, frame, function, dynamics) for frame in able)
 
 
 class _Dynamics(NamedTuple):
@@ -69,9 +102,8 @@ class _Dynamics(NamedTuple):
     spread: tuple[list[list[Scalar]], list[Scalar]] | None = None
 
 
-def _operational(f: Functions, frame: NamedFrame, function: str, rows: int) -> Program:
-    dynamics = _closed(f, function, rows) if f.tree.closed else _open(f, function)
-    _require_rank(f, frame, function, rows)
+def _operational(f: Functions, frame: NamedFrame, function: str, dynamics: _Dynamics) -> Program:
+    rows = ROWS[function]
     J, rate = _motion(f, frame, rows, dynamics)
     size = len(dynamics.bias)
     f.dag.label = "M = L^T D L from the leaves to the root"
@@ -154,7 +186,7 @@ def _open(f: Functions, function: str) -> _Dynamics:
     return _Dynamics(names, mass, bias, f.tree.outward, f.tree.layout.mechanical, (call,))
 
 
-def _closed(f: Functions, function: str, rows: int) -> _Dynamics:
+def _closed(f: Functions, function: str) -> _Dynamics:
     """With constraints: `reduction` and `reduced_equations`.
 
     Raises:
@@ -165,7 +197,7 @@ def _closed(f: Functions, function: str, rows: int) -> _Dynamics:
         problem = "it has constraints, and its equations are not reduced to independent coordinates"
         raise _refused(f, function, problem)
     names = [f.tree.velocities[v].name for _, v in closed_programs.independent(f)]
-    k, n = len(names), len(f.v)
+    k, n, rows = len(names), len(f.v), ROWS[function]
     if k < rows:
         left = "1 independent velocity" if k == 1 else f"{k} independent velocities"
         problem = f"its constraints leave {left}, fewer than the {rows} rows"
@@ -213,11 +245,10 @@ def _checks_of_frame(
     return checks
 
 
-def _require_rank(f: Functions, frame: NamedFrame, function: str, rows: int) -> None:
-    """Refuse a frame that cannot move in all directions wherever it is, judged at random states.
+def _immobile(f: Functions, frame: NamedFrame, rows: int) -> str:
+    """What to tell of a frame that nowhere can move in all directions, judged at random states; or nothing.
 
-    Raises:
-        ModelError: names the first direction that depends on those before it.
+    Named is the first direction that depends on those before it.
     """
     algebra = Floats(t=0.37, u=[0.1 + 0.07 * i for i in range(len(f.tree.inputs))])
     tree = sample_tree(f.model, f.derivation.formulation)
@@ -233,14 +264,9 @@ def _require_rank(f: Functions, frame: NamedFrame, function: str, rows: int) -> 
         view = Outlook(way.tree, algebra, arms(way.tree, algebra, q, rest))
         row = _dependent(matrix(columns(view, way.tips[0]), len(rest))[:rows])
         if row is None:
-            return
+            return ""
         failures.append(row)
-    fewer = "; operational_position may do" * (rows == 6)
-    problem = (
-        f"cannot move {DIRECTIONS[max(failures)]} by itself at any position: {function} has no "
-        f"inverse{fewer}"
-    )
-    raise ModelError(f'frame "{frame.name}"', problem)
+    return f"cannot move {DIRECTIONS[max(failures)]} by itself at any position"
 
 
 def _dependent(rows: Sequence[Sequence[float]]) -> int | None:

@@ -99,6 +99,7 @@ def module_of(
             *about,
             *closed_programs.remarks(functions),
             *network_programs.remarks(functions),
+            *operational_programs.remarks(functions, chosen),
         ),
         positions=tree.positions,
         velocities=tree.velocities,

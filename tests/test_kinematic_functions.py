@@ -377,6 +377,16 @@ def test_a_frame_that_cannot_move_everywhere_has_no_inertia_there() -> None:
         assert way in str(e.value)
 
 
+def test_frames_that_cannot_are_left_out_and_named(tmp_path: Path) -> None:
+    """Of a hand and of the link before the elbow: six rows of the first alone, three of both."""
+    given = {"frames": ("panda_link4", "panda_hand"), "functions": ("operational_space",)}
+    files = render(urdf.read(PANDA), name="m", **given)
+    names = re.findall(r"^def frame_(\w+)_operational_space", files["m.py"], re.MULTILINE)
+    assert names == ["panda_hand"]
+    for text in files["m.h"], files["m.py"]:
+        assert 'no operational_space of the frame "panda_link4": it cannot move' in text
+
+
 def test_a_mechanism_that_moves_too_little_is_refused() -> None:
     model = modelfile.read(LOOP)
     name = next(iter(model.bodies))
