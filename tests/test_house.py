@@ -34,7 +34,7 @@ OVERSIZE: dict[str, str] = {}
 """Files and functions that are bigger, each with its reason."""
 
 LAYERS: tuple[tuple[str, ...], ...] = (
-    ("errors", "version", "vector", "coupling", "outputs", "notation"),
+    ("errors", "version", "vector", "vectors", "coupling", "outputs", "notation"),
     ("domains", "files", "functions", "graph"),
     ("algebra", "expression", "formula", "jets"),
     ("differentiation", "residues"),
@@ -72,7 +72,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("closed_programs", "edge_programs", "interpretation", "modelfile", "urdf"),
     ("prologue", "reading", "shared"),
     ("programs",),
-    ("codegen", "trees"),
+    ("codegen", "golden", "trees"),
     ("appearance", "evaluation"),
     ("checking", "cli_options", "emission", "report"),
     ("cli",),
@@ -95,7 +95,9 @@ What shows a stage stands above it: methods that notebooks call, `_repr_svg_` an
 SHOWING = re.compile(r"_repr_[a-z]+_")
 
 NO_PHYSICS = {"graph": {"errors"}, "topology": {"errors", "graph"}}
-CODEGEN_SEES = {f"linegraph.{name}" for name in ("errors", "expression", "functions", "program")}
+CODEGEN_SEES = {
+    f"linegraph.{name}" for name in ("errors", "expression", "functions", "program", "vectors")
+}
 CLOSED_FORMS = (
     "dynamic",
     "equation_list",
