@@ -75,16 +75,19 @@ class Bodies:
     def mass_matrix(self) -> Valued:
         """M, with what networks store; networks by their laws in numbers."""
         np, n = self.walk.np, len(self.walk.v)
-        total = np.zeros((n, n))
+        total, diagonal = np.zeros((n, n)), np.zeros(n)
         for body in self._bodies:
             linear, angular = body.moved.linear[:, :-1], body.moved.angular[:, :-1]
             force, torque = self._needed(body, linear, angular)
             total += linear.T @ force + angular.T @ torque
+            # a slender body has none about its axis, but for the rounding of the rest
+            diagonal += np.linalg.norm(body.inertia) * np.square(angular).sum(axis=0)
+            diagonal += body.mass * np.square(linear).sum(axis=0)
         for i, j, entry in network_entries(
             self.walk.numeric.exchange(self.walk.q, self.walk.v), self.walk.numeric.algebra
         ):
             total[i, j] += float(entry)
-        diagonal = np.sqrt(np.abs(np.diag(total)))
+        diagonal = np.sqrt(np.maximum(diagonal, np.abs(np.diag(total))))
         return total, np.maximum(np.abs(total), np.outer(diagonal, diagonal))
 
     def _needed(self, body: _Heavy, linear: Array, angular: Array) -> tuple[Array, Array]:

@@ -125,13 +125,14 @@ class Constraints:
 
     @property
     def rates(self) -> Valued:
-        """J v - b."""
-        J, rates, _ = self._constrained
-        return rates, self.walk.np.abs(J) @ self.walk.np.abs(self.walk.v) + self.walk.np.abs(rates)
+        """J v - b; judged by J for any v as fast."""
+        np, (J, rates, _) = self.walk.np, self._constrained
+        fastest = np.abs(self.walk.v).max(initial=0.0)
+        return rates, np.abs(J).sum(axis=1) * fastest + np.abs(rates)
 
     @property
     def bias(self) -> Valued:
         """γ; at speeds v it is of the size of J v², of which much may cancel."""
         np, (J, _, bias) = self.walk.np, self._constrained
-        speeds = np.abs(self.walk.v)
-        return bias, np.abs(J) @ speeds * speeds.max(initial=0.0) + np.abs(bias)
+        fastest = np.abs(self.walk.v).max(initial=0.0)
+        return bias, np.abs(J).sum(axis=1) * fastest * fastest + np.abs(bias)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from linegraph.assembly import DEPENDENT
 from linegraph.closure import equations
 from linegraph.golden.bodies import NOISE, Bodies
 from linegraph.golden.constraints import Constraints
@@ -126,37 +127,42 @@ class Point:
     def motion(self) -> tuple[Valued, Valued]:
         """v̇ and λ of ``M v̇ = Q - h + Jᵀ λ``, ``J v̇ = γ``, λ of least norm where it is not unique."""
         np, n = self.walk.np, len(self.v)
-        M, (force, of_force) = self.bodies.mass_matrix[0], self.force
+        (M, of_M), (force, of_force) = self.bodies.mass_matrix, self.force
         J = np.zeros((0, n))
         right, size = force, of_force
         if self.walk.tree.closed:
             J, (bias, of_bias) = self.closed.jacobian[0], self.stabilised
             right, size = np.concatenate([force, bias]), np.concatenate([of_force, of_bias])
         rows = np.block([[M, -J.T], [J, np.zeros((len(J), len(J)))]])
-        inverse = self._inverse(rows, n)
+        scale = self._scale(rows, of_M)
+        scaled, right, size = rows * scale * scale[:, None], right * scale, size * scale
+        inverse = np.linalg.pinv(scaled, rcond=1e-10) if len(J) else np.linalg.inv(scaled)
         found = inverse @ right
-        found += inverse @ (right - rows @ found)
-        # first order: how far errors in the rows and on the right carry
-        parts = np.abs(inverse) @ (size + np.abs(rows) @ np.abs(found))
-        lam, of_lam = found[n:], parts[n:]
+        found += inverse @ (right - scaled @ found)
+        # first order: how far errors in the rows and on the right carry, into what is not determined too
+        free = np.abs(np.eye(len(rows)) - inverse @ scaled) * bool(len(J))
+        parts = np.abs(inverse) @ (size + np.abs(scaled) @ np.abs(found))
+        parts += free @ (np.abs(scaled.T) @ np.abs(inverse.T @ found))
+        found, parts = found * scale, parts * scale
+        # of least norm: what does nothing along v is none of it, to the last digit
+        left, sizes, _ = np.linalg.svd(J, full_matrices=False)
+        left = left[:, sizes > DEPENDENT * sizes.max(initial=0.0)]
+        lam, of_lam = left @ (left.T @ found[n:]), parts[n:]
         # what a plane mechanism does not need out of its plane is rounding
         of_lam = np.maximum(of_lam, NOISE * of_lam.max(initial=0.0))
         return (found[:n], parts[:n]), (lam, of_lam)
 
-    def _inverse(self, rows: Any, n: int) -> Any:
-        """The inverse of those rows; where multipliers are not unique, what gives those of least norm.
+    def _scale(self, rows: Any, of_M: Any) -> Any:
+        """What makes rank decide and not units.
 
-        Velocities are scaled to unit inertia, and all multipliers alike, so that it is rank that decides and
-        not the units; the least norm stays that of the multipliers.
+        Velocities are scaled to unit inertia, and all multipliers alike: the least norm stays theirs.
         """
-        np = self.walk.np
+        np, n = self.walk.np, len(self.v)
         scale = np.ones(len(rows))
-        inertia = np.abs(np.diag(rows)[:n])
+        inertia = np.diag(of_M)
         scale[:n] = 1 / np.sqrt(np.where(inertia > 0, inertia, inertia.max(initial=0.0) or 1.0))
         scale[n:] = 1 / (np.abs(rows[n:, :n] * scale[:n]).max(initial=0.0) or 1.0)
-        scaled = rows * scale * scale[:, None]
-        found = np.linalg.pinv(scaled, rcond=1e-10) if n < len(rows) else np.linalg.inv(scaled)
-        return found * scale * scale[:, None]
+        return scale
 
     @cached_property
     def inverse(self) -> Valued:
