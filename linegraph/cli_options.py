@@ -157,6 +157,12 @@ EMIT: tuple[Option, ...] = (
         help="Write functions of many states in C, too: equations_batch(n, q, v, M, h) and the like, with "
         "several states side by side in vector registers.",
     ),
+    click.option(
+        "--tests",
+        is_flag=True,
+        help="Write golden vectors, too: NAME_test.c and test_NAME.py, which check the functions on the "
+        "target against values found by another route.",
+    ),
 )
 """What `emit` takes besides."""
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from linegraph.model import Model
     from linegraph.program import Module
+    from linegraph.vectors import Vectors
 
 CONVENTIONS = (
     "Angles are in radians. Quaternions are (x, y, z, w) and must have length 1. A free joint has "
@@ -40,6 +41,7 @@ def emit(
     frames: Iterable[str] = (),
     trig: str = "libm",
     batch: bool = False,
+    tests: bool = False,
     progress: Callable[[str], None] | None = None,
 ) -> list[Path]:
     """Derive a model and write its functions as source files.
@@ -55,6 +57,7 @@ def emit(
         frames: bodies, or frames of bodies as ``body.frame``, whose kinematics are to be written.
         trig: whose sine and cosine C calls, ``libm`` or ``inline``: those of the file itself.
         batch: write functions of many states at once in C, too.
+        tests: write golden vectors, too: programs that check what is written against another route.
         progress: called with a short text before each stage.
 
     Returns:
@@ -82,6 +85,7 @@ def emit(
         frames=frames,
         trig=trig,
         batch=batch,
+        tests=tests,
         progress=progress,
     )
     return write_all(out, files)
@@ -98,6 +102,7 @@ def render(
     frames: Iterable[str] = (),
     trig: str = "libm",
     batch: bool = False,
+    tests: bool = False,
     progress: Callable[[str], None] | None = None,
 ) -> dict[str, str]:
     """What `emit` writes, as {file name: text}."""
@@ -117,7 +122,22 @@ def render(
     for language in chosen:
         tell(f"writing {language}")
         files |= codegen.render(module, language, options)
+    if tests:
+        tell("computing golden vectors")
+        found = _vectors(model, module)
+        for language in chosen:
+            files |= codegen.render_tests(module, found, language, options)
     return files
+
+
+def _vectors(model: Model, module: Module) -> Vectors:
+    """Golden vectors of a module."""
+    from linegraph import golden
+
+    try:
+        return golden.vectors(derive(model), module)
+    except ModelError as error:
+        raise placed(error, model) from None
 
 
 def module_for(
