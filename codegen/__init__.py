@@ -8,20 +8,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from codegen import c, naming, python
+from codegen import c, golden, naming, python
 from codegen.options import DEFAULT, TRIG, Options
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from linegraph.program import Module
+    from linegraph.vectors import Vectors
 
 _REGISTER: dict[str, Callable[[Module, Options], dict[str, str]]] = {
     "c": c.render,
     "python": python.render,
 }
 
-__all__ = ["LANGUAGES", "TRIG", "Options", "naming", "render"]
+__all__ = ["LANGUAGES", "TRIG", "Options", "naming", "render", "render_tests"]
 
 LANGUAGES = tuple(_REGISTER)
 """The names of all languages, in the order in which they are declared."""
@@ -39,3 +40,10 @@ def render(module: Module, language: str, options: Options = DEFAULT) -> dict[st
     """
     naming.validate(module)
     return _REGISTER[language](module, options)
+
+
+def render_tests(
+    module: Module, vectors: Vectors, language: str, options: Options = DEFAULT
+) -> dict[str, str]:
+    """The program that checks those files against golden vectors: file name -> text."""
+    return golden.render(module, vectors, language, options)

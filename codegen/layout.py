@@ -45,7 +45,10 @@ def extent(module: Module, name: str, size: int, prefix: str = "", axis: int = 0
 
 
 def shape(module: Module, result: Result, prefix: str = "") -> list[str]:
-    """The extents of a result, each as `extent` says it."""
+    """The extents of a result, each as `extent` says it, or by the counts that the result itself names."""
+    if result.counts:
+        pairs = zip(result.counts, result.shape, strict=True)
+        return [f"{prefix}{count}" if count else str(size) for count, size in pairs]
     return [
         extent(module, result.name, size, prefix, axis) for axis, size in enumerate(result.shape)
     ]

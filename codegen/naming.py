@@ -9,12 +9,15 @@ from codegen import layout, reserved
 from linegraph.errors import NameRefused
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from linegraph.program import Module, Program, Routine
 
 LONGEST = 128
 """Identifiers are at most this long, so that they also do as file names."""
+
+LONGEST_STEM = LONGEST - 48
+"""What names begin with leaves place for what they end with."""
 
 LONGEST_TEXT = 1000
 """C compilers need to accept string literals of 4095 bytes only."""
@@ -39,15 +42,28 @@ def identifier(text: str) -> str:
     return f"x_{name}" if taken else name
 
 
-def identifiers(texts: Sequence[str], what: str) -> tuple[str, ...]:
-    """One `identifier` for each text; `what` says what the texts name, e.g. ``joint``.
+def stem(text: str) -> str:
+    """The start of identifiers, as close to `text` as can be: words that are taken are none in longer ones.
+
+    Example:
+        >>> stem("tool.tip"), stem("class"), stem("2nd arm")
+        ('tool_tip', 'class', 'x_2nd_arm')
+    """
+    name = "_".join(re.findall(r"[A-Za-z0-9]+", text))[:LONGEST_STEM].rstrip("_") or "x"
+    return f"x_{name}" if name[0].isdigit() else name
+
+
+def identifiers(
+    texts: Sequence[str], what: str, made: Callable[[str], str] = identifier
+) -> tuple[str, ...]:
+    """One `identifier`, or `stem`, for each text; `what` says what the texts name, e.g. ``joint``.
 
     Raises:
         NameRefused: two of them come out the same.
     """
     first: dict[str, str] = {}
     for text in texts:
-        name = identifier(text)
+        name = made(text)
         if name in first:
             both = f"{what} {quote(first[name])} and {what} {quote(text)}"
             raise NameRefused(f"{both}: both become {name} in emitted code; rename one of them")

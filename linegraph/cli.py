@@ -59,6 +59,7 @@ def main() -> None:
       linegraph emit panda.urdf --out build
       linegraph emit anymal.urdf --base floating --lang c --out build
       linegraph emit panda.urdf --lock panda_finger_joint1=0.02 --out build
+      linegraph emit panda.urdf --frame panda_hand --with center_of_mass --out build
       linegraph show panda.urdf
       linegraph derive crane.toml --output crane.html
 
@@ -101,6 +102,12 @@ def emit(
     and with closed loops or constraints
       constraints, constraint_jacobian, constraint_rates, constraint_bias, project,
       complete, reduction, reduced_equations: the mechanism in its independent coordinates
+    and on request
+      frame_NAME_pose, _velocity, _jacobian, _jacobian_dot_v    with --frame, of a link or a frame
+      frame_NAME_operational_space, _operational_position       with --frame and --with
+      center_of_mass, momentum, centroidal_momentum_matrix, ... with --with
+      kinematics         all of these but those of operational space at once
+      power              with --with, the audit of through times across
     """
     with _explained():
         from linegraph.emission import emit as write

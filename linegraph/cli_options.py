@@ -14,6 +14,26 @@ if TYPE_CHECKING:
 
 LANGUAGES = ("c", "python")
 
+FURTHER = {
+    "power": "the audit of through times across over all edges",
+    "linearize": "A and B of x' = f(x, u) at any state",
+    "inverse_dynamics_derivatives": "of tau by q, v and a",
+    "forward_dynamics_derivatives": "of a by q, v and u",
+    "inverse_dynamics_parameter_derivatives": "of tau by the parameters",
+    "forward_dynamics_parameter_derivatives": "of a by the parameters",
+    "center_of_mass": "of all that moves",
+    "center_of_mass_velocity": "its velocity",
+    "center_of_mass_jacobian": "its Jacobian",
+    "momentum": "linear and, about the mass centre, angular",
+    "centroidal_momentum_matrix": "Ag of momentum = Ag v",
+    "centroidal_momentum_bias": "its rate at v' = 0",
+    "kinematics": "all of these and of each --frame at once, as is written by itself where several are asked "
+    "for",
+    "operational_space": "Lambda, mu and Jbar of each --frame",
+    "operational_position": "the same of its origin alone",
+}
+"""What `emit` writes only where it is asked for."""
+
 FUNCTIONS = (
     "mass_matrix",
     "bias",
@@ -29,26 +49,11 @@ FUNCTIONS = (
     "across",
     "reactions",
     "drives",
-    "power",
     "outputs",
-    "linearize",
-    "inverse_dynamics_derivatives",
-    "forward_dynamics_derivatives",
-    "inverse_dynamics_parameter_derivatives",
-    "forward_dynamics_parameter_derivatives",
+    "frames",
+    *FURTHER,
 )
 """What functions `emit` can be asked for."""
-
-
-FURTHER = {
-    "power": "the audit of through times across over all edges",
-    "linearize": "A and B of x' = f(x, u) at any state",
-    "inverse_dynamics_derivatives": "of tau by q, v and a",
-    "forward_dynamics_derivatives": "of a by q, v and u",
-    "inverse_dynamics_parameter_derivatives": "of tau by the parameters",
-    "forward_dynamics_parameter_derivatives": "of a by the parameters",
-}
-"""What `emit` writes only where it is asked for."""
 
 
 def with_options(options: tuple[Option, ...]) -> Option:
@@ -116,6 +121,14 @@ EMIT: tuple[Option, ...] = (
         f"{'; '.join(f'{name}: {what}' for name, what in FURTHER.items())}.",
     ),
     click.option(
+        "--frame",
+        "frames",
+        metavar="BODY[.FRAME]",
+        multiple=True,
+        help="Write pose, velocity, Jacobian and its rate of a body's frame: a link of a URDF, or a body "
+        "or BODY.FRAME of a model file; repeatable.",
+    ),
+    click.option(
         "--only",
         type=click.Choice(FUNCTIONS),
         metavar="FUNCTION",
@@ -143,6 +156,12 @@ EMIT: tuple[Option, ...] = (
         is_flag=True,
         help="Write functions of many states in C, too: equations_batch(n, q, v, M, h) and the like, with "
         "several states side by side in vector registers.",
+    ),
+    click.option(
+        "--tests",
+        is_flag=True,
+        help="Write golden vectors, too: NAME_test.c and test_NAME.py, which check the functions on the "
+        "target against values found by another route.",
     ),
 )
 """What `emit` takes besides."""

@@ -8,6 +8,7 @@ from linegraph.derive import derive, placed
 from linegraph.errors import ModelError
 from linegraph.files import write_all
 from linegraph.programs import ON_REQUEST, PROGRAMS, module_of
+from linegraph.tips import NamedFrame, require_frame
 from linegraph.version import __version__
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
     from linegraph.model import Model
     from linegraph.program import Module
+    from linegraph.vectors import Vectors
 
 CONVENTIONS = (
     "Angles are in radians. Quaternions are (x, y, z, w) and must have length 1. A free joint has "
@@ -36,8 +38,10 @@ def emit(
     folded: bool = False,
     functions: Iterable[str] = (),
     only: Iterable[str] = (),
+    frames: Iterable[str] = (),
     trig: str = "libm",
     batch: bool = False,
+    tests: bool = False,
     progress: Callable[[str], None] | None = None,
 ) -> list[Path]:
     """Derive a model and write its functions as source files.
@@ -50,8 +54,10 @@ def emit(
         folded: write the parameters' values into the code instead of keeping them symbolic.
         functions: further functions to write, of `programs.ON_REQUEST`.
         only: write nothing but these of `programs.PROGRAMS` and what they call.
+        frames: bodies, or frames of bodies as ``body.frame``, whose kinematics are to be written.
         trig: whose sine and cosine C calls, ``libm`` or ``inline``: those of the file itself.
         batch: write functions of many states at once in C, too.
+        tests: write golden vectors, too: programs that check what is written against another route.
         progress: called with a short text before each stage.
 
     Returns:
@@ -76,8 +82,10 @@ def emit(
         folded=folded,
         functions=functions,
         only=only,
+        frames=frames,
         trig=trig,
         batch=batch,
+        tests=tests,
         progress=progress,
     )
     return write_all(out, files)
@@ -91,8 +99,10 @@ def render(
     folded: bool = False,
     functions: Iterable[str] = (),
     only: Iterable[str] = (),
+    frames: Iterable[str] = (),
     trig: str = "libm",
     batch: bool = False,
+    tests: bool = False,
     progress: Callable[[str], None] | None = None,
 ) -> dict[str, str]:
     """What `emit` writes, as {file name: text}."""
@@ -107,12 +117,27 @@ def render(
     options = codegen.Options(trig, batch)
     prefix = codegen.naming.identifier(model.name) if name is None else name
     tell("deriving")
-    module = module_for(model, prefix, folded=folded, functions=functions, only=only)
+    module = module_for(model, prefix, folded=folded, functions=functions, only=only, frames=frames)
     files: dict[str, str] = {}
     for language in chosen:
         tell(f"writing {language}")
         files |= codegen.render(module, language, options)
+    if tests:
+        tell("computing golden vectors")
+        found = _vectors(model, module)
+        for language in chosen:
+            files |= codegen.render_tests(module, found, language, options)
     return files
+
+
+def _vectors(model: Model, module: Module) -> Vectors:
+    """Golden vectors of a module."""
+    from linegraph import golden
+
+    try:
+        return golden.vectors(derive(model), module)
+    except ModelError as error:
+        raise placed(error, model) from None
 
 
 def module_for(
@@ -122,18 +147,53 @@ def module_for(
     folded: bool = False,
     functions: Iterable[str] = (),
     only: Iterable[str] = (),
+    frames: Iterable[str] = (),
 ) -> Module:
-    """The program of every function of a model: what operation counts are taken from."""
+    """The program of every function of a model: what operation counts are taken from.
+
+    Example:
+        >>> from linegraph import Model
+        >>> model = Model("pendulum")
+        >>> bob = model.body("bob", mass=2.0, mass_center=(0, 0, -0.5))
+        >>> _ = model.revolute("hinge", between=("ground", bob), axis=(0, 1, 0))
+        >>> module_for(model, "m", only=("frames", "center_of_mass"), frames=("bob",)).programs[:2]
+        (<program frame_bob_pose(q): 2 operations>, <program frame_bob_velocity(q, v): 0 operations>)
+    """
     about = [f"Equations of motion of {model.name}, derived by linegraph {__version__}."]
     about += [text for text in (model.about,) if text]
     wanted, few = tuple(functions), tuple(only)
-    for known, named in ((ON_REQUEST, wanted), (tuple(PROGRAMS), few)):
-        for function in named:
+    for known, chosen in ((ON_REQUEST, wanted), (tuple(PROGRAMS), few)):
+        for function in chosen:
             if function not in known:
                 raise ModelError(f'function "{function}"', f"is not one of {', '.join(known)}")
     about = [*about, *CONVENTIONS]
+    named = _named(model, frames)
     derivation = derive(model)
     try:
-        return module_of(derivation, name, folded=folded, about=about, wanted=wanted, only=few)
+        return module_of(
+            derivation,
+            name,
+            folded=folded,
+            about=about,
+            wanted=wanted,
+            only=few,
+            frames=named,
+        )
     except ModelError as error:
         raise placed(error, model) from None
+
+
+def _named(model: Model, frames: Iterable[str]) -> list[NamedFrame]:
+    """Frames with what they are called in functions' names.
+
+    Raises:
+        ModelError: there is no such frame.
+        NameRefused: two are called alike.
+    """
+    from codegen import naming
+
+    names = list(dict.fromkeys(frames))
+    for name in names:
+        require_frame(model, name)
+    called = naming.identifiers(names, "frame", naming.stem)
+    return [NamedFrame(*pair) for pair in zip(called, names, strict=True)]

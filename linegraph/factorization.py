@@ -41,14 +41,26 @@ class Factors(NamedTuple):
     below: list[dict[int, Scalar]]
     outward: Sequence[int]
 
-    def solve(self, right: Sequence[Scalar], until: int | None = None) -> list[Scalar]:
-        """X of ``M x = r``; of the coordinates outward beyond `until` nothing that is of use."""
-        x = list(right)
+    def solve(self, right: Sequence[Scalar]) -> list[Scalar]:
+        """The x of ``M x = r``."""
+        return self.substituted(self.scaled(self.reduced(right)))
+
+    def reduced(self, right: Sequence[Scalar]) -> list[Scalar]:
+        """``y = L^-T r``: of two of them ``r1 . M^-1 r2 = y1 . D^-1 y2``."""
+        y = list(right)
         for k in reversed(self.outward):
-            if x[k] != 0:
+            if y[k] != 0:
                 for i, entry in self.below[k].items():
-                    x[i] = x[i] - entry * x[k]
-                x[k] = x[k] * self.inverses[k]
+                    y[i] = y[i] - entry * y[k]
+        return y
+
+    def scaled(self, reduced: Sequence[Scalar]) -> list[Scalar]:
+        """``D^-1 y``."""
+        return [y * inverse for y, inverse in zip(reduced, self.inverses, strict=True)]
+
+    def substituted(self, scaled: Sequence[Scalar], until: int | None = None) -> list[Scalar]:
+        """``L^-1 z``; of the coordinates outward beyond `until` nothing that is of use."""
+        x = list(scaled)
         for k in self.outward:
             for i, entry in self.below[k].items():
                 x[k] = x[k] - entry * x[i]
@@ -61,7 +73,8 @@ class Factors(NamedTuple):
         size = len(self.pivots)
         rows: list[list[Scalar]] = [[0] * size for _ in range(size)]
         for place, k in enumerate(self.outward):
-            column = self.solve([int(i == k) for i in range(size)], until=k)
+            unit = self.scaled(self.reduced([int(i == k) for i in range(size)]))
+            column = self.substituted(unit, until=k)
             for i in self.outward[: place + 1]:
                 rows[i][k] = rows[k][i] = column[i]
         return rows

@@ -185,25 +185,43 @@ class KinematicTree:
         Exact for the equations of motion, not for joint reactions. Where links stand and what they weigh
         depends on parameters at most, so that of symbols the sums are computed once, by `prepare`.
         """
-        links = list(self.links)
-        in_plane = _in_plane(links)
-        for i in reversed(range(len(links))):
-            link = links[i]
-            parent = links[link.parent] if link.parent >= 0 else None
-            # of a link that does not turn with its parent only the mass can be handed over
-            split = point_apart if link.place.level else link.joint.regroup
-            kept, handed = split(link.moments)
-            if in_plane[i]:
-                about = kept.inertia[5]
-                kept = kept._replace(second=(about, 0, 0, 0, 0, 0), about=(None, None, about))
-            links[i] = replace(link, moments=kept, in_plane=in_plane[i])
-            if parent is not None:
-                shifted = carried(handed, link.rotation, link.at)
-                links[link.parent] = replace(parent, moments=joined(parent.moments, shifted))
-        return replace(self, links=tuple(links))
+        return replace(self, links=tuple(handed_on(self.links, links_in_plane(self.links))[0]))
 
 
-def _in_plane(links: Sequence[Link]) -> list[bool]:
+def handed_on(
+    links: Sequence[Link], planar: Sequence[bool]
+) -> tuple[list[Link], list[tuple[Moments, Link]]]:
+    """What a parent can carry handed to it, leaf to root.
+
+    Args:
+        links: with moments of their own.
+        planar: of which only the inertia about z is to be kept, since M and h feel no other.
+
+    Returns:
+        The links, and what those on ground hand to it, beside each the link it comes from. Where none is
+        planar, all together have the mass, the first moment and the momentum of before.
+    """
+    found = list(links)
+    at_rest = []
+    for i in reversed(range(len(found))):
+        link = found[i]
+        # of a link that does not turn with its parent only the mass can be handed over
+        split = point_apart if link.place.level else link.joint.regroup
+        kept, handed = split(link.moments)
+        if planar[i]:
+            about = kept.inertia[5]
+            kept = kept._replace(second=(about, 0, 0, 0, 0, 0), about=(None, None, about))
+        found[i] = replace(link, moments=kept, in_plane=planar[i])
+        if link.parent < 0:
+            at_rest.append((handed, link))
+            continue
+        parent = found[link.parent]
+        shifted = carried(handed, link.rotation, link.at)
+        found[link.parent] = replace(parent, moments=joined(parent.moments, shifted))
+    return found, at_rest
+
+
+def links_in_plane(links: Sequence[Link]) -> list[bool]:
     """Whether a link never turns but about its own z, since all joints inward turn about that direction."""
     still: list[bool] = []
     found: list[bool] = []
@@ -219,7 +237,12 @@ def _in_plane(links: Sequence[Link]) -> list[bool]:
 
 def parallel(link: Link) -> bool:
     """Whether a link turns about the direction of its parent's z, either way round."""
-    return link.joint.turns and link.rotation.out((0, 0, 1)) in ((0, 0, 1), (0, 0, -1))
+    return link.joint.turns and upright(link)
+
+
+def upright(link: Link) -> bool:
+    """Whether a link's z has the direction of its parent's, either way round, before its joint moves."""
+    return link.rotation.out((0, 0, 1)) in ((0, 0, 1), (0, 0, -1))
 
 
 def carried(moments: Moments, rotation: Rotation, at: Vector) -> Moments:

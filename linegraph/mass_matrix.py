@@ -41,7 +41,7 @@ def mass_matrix(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> Ro
         set_label(algebra, f"mass matrix, {link.caption}")
         motion = crossed[i].motion
         for a, freedom in enumerate(link.velocities):
-            force, torque = _inertia_force(carried_by[i], motion.angular[a], motion.linear[a])
+            force, torque = inertia_force(carried_by[i], motion.angular[a], motion.linear[a])
             for b in range(a + 1):
                 entry = projection(motion, b, force, torque)
                 _contribute(rows, freedom, link.velocities[b], entry, once=a == b)
@@ -144,7 +144,7 @@ def composites(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> lis
     return moments
 
 
-def _inertia_force(composite: Moments, angular: Vector, linear: Vector) -> tuple[Vector, Vector]:
+def inertia_force(composite: Moments, angular: Vector, linear: Vector) -> tuple[Vector, Vector]:
     """Force and torque about the origin for accelerations (angular, linear) of a composite at rest."""
     mass, first, *_ = composite
     force = add(vector.scale(mass, linear), cross(angular, first))

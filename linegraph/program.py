@@ -42,12 +42,18 @@ class Argument:
 
 @dataclass(frozen=True)
 class Result:
-    """What a function returns: a dense array, its `entries` row-major."""
+    """What a function returns: a dense array, its `entries` row-major.
+
+    Attributes:
+        counts: for each extent the count it is called by, ``NV`` say, or nothing; none where the name of the
+            result says it.
+    """
 
     name: str
     shape: tuple[int, ...]
     entries: tuple[Operand, ...]
     about: str
+    counts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -212,7 +218,16 @@ def live_nodes(program: Program) -> list[Node]:
 
 def operations_of(results: tuple[Result, ...], checks: tuple[Check, ...] = ()) -> int:
     """Operations that results and checks take together; a change of sign is free."""
-    return sum(node.op not in (SYMBOL, NEG) for node in _live(_roots(results, checks)))
+    return len(_operations(_roots(results, checks)))
+
+
+def needed_for(entries: Iterable[Operand]) -> frozenset[int]:
+    """The indices of the operations that some entries take together."""
+    return frozenset(_operations([entry for entry in entries if isinstance(entry, Node)]))
+
+
+def _operations(roots: list[Node]) -> list[int]:
+    return [node.index for node in _live(roots) if node.op not in (SYMBOL, NEG)]
 
 
 def reads(argument: str, results: tuple[Result, ...]) -> bool:

@@ -9,7 +9,9 @@ from linegraph import (
     closed_programs,
     derivative_programs,
     edge_programs,
+    kinematic_programs,
     network_programs,
+    operational_programs,
     orthogonality,
     pivots,
 )
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from linegraph.derive import Derivation
+    from linegraph.tips import NamedFrame
     from linegraph.vector import Scalar
 
 
@@ -44,6 +47,7 @@ def module_of(
     about: Iterable[str],
     wanted: Iterable[str] = (),
     only: Iterable[str] = (),
+    frames: Iterable[NamedFrame] = (),
     prologue: bool = True,
 ) -> Module:
     """All functions of a model.
@@ -55,6 +59,7 @@ def module_of(
         about: paragraphs for the head of the file.
         wanted: further functions to emit, of `ON_REQUEST`.
         only: nothing but these of `PROGRAMS` and what they call; all if there are none.
+        frames: the frames whose kinematics are to be emitted.
         prologue: whether what parameters alone determine is hoisted into a function of its own.
 
     Raises:
@@ -62,13 +67,21 @@ def module_of(
             those asked for.
     """
     parameters = parameters_of(derivation)
-    functions = Functions(derivation, folded or not parameters)
     asked = (*only,) or (*(set(PROGRAMS) - set(ON_REQUEST)), *wanted)
+    frames = tuple(frames)
+    if frames and only and not {"kinematics", *OF_FRAMES} & set(asked):
+        problem = f"nothing of it is asked for: {', '.join(OF_FRAMES)} or kinematics would be"
+        raise ModelError(f'frame "{frames[0].name}"', problem)
+    if not only:
+        asked = (*asked, *kinematic_programs.besides(asked, frames))
+    functions = Functions(derivation, folded or not parameters, frames, asked)
     made = _made(functions, [key for key in PROGRAMS if key in asked])
-    for key in only:
+    for key in (*only, *(key for key in wanted if key in OF_FRAMES)):
         if not made[key]:
             raise ModelError(
-                f'function "{key}"', "is none of this model: it has nothing of the kind"
+                f'function "{key}"',
+                "is none of this model: it has nothing of the kind"
+                f"{'; name a frame (--frame)' * (key in OF_FRAMES)}",
             )
     chosen = [key for key in PROGRAMS if key in made]
     programs = tuple(program for key in chosen for program in made[key])
@@ -85,6 +98,7 @@ def module_of(
             *about,
             *closed_programs.remarks(functions),
             *network_programs.remarks(functions),
+            *operational_programs.remarks(functions, chosen),
         ),
         positions=tree.positions,
         velocities=tree.velocities,
@@ -275,8 +289,16 @@ PROGRAMS: dict[str, Maker] = {
     "forward_dynamics_derivatives": derivative_programs.forward_dynamics,
     "inverse_dynamics_parameter_derivatives": derivative_programs.inverse_dynamics_by_parameters,
     "forward_dynamics_parameter_derivatives": derivative_programs.forward_dynamics_by_parameters,
+    "frames": kinematic_programs.frames,
+    **{key: kinematic_programs.whole(key) for key in kinematic_programs.WHOLE},
+    "kinematics": kinematic_programs.kinematics,
+    "operational_space": operational_programs.operational_space,
+    "operational_position": operational_programs.operational_position,
 }
 """The register of emitted functions, in emitted order: what a user may ask for, and what makes them."""
+
+OF_FRAMES = ("frames", "operational_space", "operational_position")
+"""What there is of frames only."""
 
 ON_REQUEST = (
     "power",
@@ -285,6 +307,9 @@ ON_REQUEST = (
     "forward_dynamics_derivatives",
     "inverse_dynamics_parameter_derivatives",
     "forward_dynamics_parameter_derivatives",
+    *OF_FRAMES,
+    *kinematic_programs.WHOLE,
+    "kinematics",
 )
 """Emitted only where they are asked for."""
 

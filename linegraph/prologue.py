@@ -1,8 +1,8 @@
 """The prologue: what parameters alone determine is computed once, by `prepare`, and read by other functions.
 
-Every function of `PREPARED` gets a twin that takes the constants c in place of the parameters p. Every value
-of parameters alone that it uses is an entry of c, a parameter itself, too; `constants` brings together what
-can be.
+Every function of `is_prepared` gets a twin that takes the constants c in place of the parameters p. Every
+value of parameters alone that it uses is an entry of c, a parameter itself, too; `constants` brings together
+what can be.
 
 A function of parameters hands its work to its twin where that costs about the same, so that the arithmetic
 is emitted once. Short ones stay whole, and so do those that could then fail where they do not now, as a
@@ -54,8 +54,18 @@ PREPARED = (
     "complete",
     "reduction",
     "reduced_equations",
+    "center_of_mass",
+    "center_of_mass_velocity",
+    "center_of_mass_jacobian",
+    "momentum",
+    "centroidal_momentum_matrix",
+    "centroidal_momentum_bias",
+    "kinematics",
 )
 """The functions of simulation and control; the others read what few parameters they need themselves."""
+
+PREPARED_PREFIX = "frame_"
+"""How the names of all functions of frames begin, which belong to these."""
 
 SHORT = 100
 """Functions of fewer operations stay whole: a reader sees what they do."""
@@ -66,6 +76,16 @@ MOST_MORE = 1 / 8
 T = TypeVar("T", bound=Program | Routine)
 
 
+def is_prepared(function: str) -> bool:
+    """Whether a function gets a twin that takes the constants.
+
+    Example:
+        >>> is_prepared("equations"), is_prepared("frame_hand_pose"), is_prepared("energy")
+        (True, True, False)
+    """
+    return function in PREPARED or function.startswith(PREPARED_PREFIX)
+
+
 def with_prologue(
     programs: Sequence[Program | Routine],
 ) -> tuple[tuple[Program | Routine, ...], int]:
@@ -74,7 +94,7 @@ def with_prologue(
     Returns:
         All functions, and how many constants there are: none where no function depends on parameters.
     """
-    given = [p for p in programs if isinstance(p, Program) and p.name in PREPARED]
+    given = [p for p in programs if isinstance(p, Program) and is_prepared(p.name)]
     twins = Restructured().programs(given)
     constants = _Constants(twins)
     entries = constants.entries
@@ -96,7 +116,7 @@ def with_prologue(
     found |= {
         p.name: _twin(p, len(entries))
         for p in programs
-        if isinstance(p, Routine) and p.name in PREPARED
+        if isinstance(p, Routine) and is_prepared(p.name)
     }
     handing = _Handing(programs, prologue)
     whole: list[Program | Routine] = [prologue]
@@ -179,7 +199,7 @@ class _Handing:
         self._prologue = prologue
         self._constant: dict[int, bool] = {}
         self._costs: dict[str, _Cost] = {}
-        costs = [self._cost(p.name) for p in programs if p.name in PREPARED]
+        costs = [self._cost(p.name) for p in programs if is_prepared(p.name)]
         every = frozenset[int]().union(*(cost.divisors for cost in costs))
         self._divisors = every - _judged(p for p in programs if isinstance(p, Program))
 

@@ -34,8 +34,11 @@ from linegraph.united import (
 from linegraph.working_frames import shortened
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from linegraph.derive import Derivation
     from linegraph.exchange import Exchange
+    from linegraph.tips import NamedFrame
     from linegraph.vector import Scalar
 
 ORDER = ("q", "v", "u", "a", "lam", "loop")
@@ -56,8 +59,23 @@ ARGUMENTS = {
 class Functions:
     """What several functions share: the DAG, the tree over it, M and h."""
 
-    def __init__(self, derivation: Derivation, folded: bool) -> None:
-        """Nothing is derived before a function asks for it."""
+    def __init__(
+        self,
+        derivation: Derivation,
+        folded: bool,
+        frames: Iterable[NamedFrame] = (),
+        asked: Iterable[str] = (),
+    ) -> None:
+        """Nothing is derived before a function asks for it.
+
+        Args:
+            derivation: the model with its graph and its tree.
+            folded: whether parameters become numbers.
+            frames: those whose kinematics are asked for.
+            asked: the functions that are, by their keys.
+        """
+        self.frames = tuple(frames)
+        self.asked = frozenset(asked)
         self.dag = Dag()
         self.derivation = derivation
         self.model = derivation.model

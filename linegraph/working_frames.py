@@ -21,7 +21,17 @@ from typing import TYPE_CHECKING, NamedTuple
 from linegraph import vector
 from linegraph.body import Placement
 from linegraph.expansion import expanded
-from linegraph.kinematics import KinematicTree, Link, carried, compose, parallel, swept
+from linegraph.kinematics import (
+    KinematicTree,
+    Link,
+    carried,
+    compose,
+    handed_on,
+    links_in_plane,
+    parallel,
+    swept,
+    upright,
+)
 from linegraph.rotation import (
     IDENTITY_MATRIX,
     Rotation,
@@ -64,11 +74,13 @@ class Shortened(NamedTuple):
         tree: the links; what it says of bodies and ends holds for the walk only.
         places: for each link of the walk the one that has its bodies.
         poses: for each link of the walk that one's working frame in its own.
+        at_rest: what links on ground hand to it, and these links.
     """
 
     tree: KinematicTree
     places: tuple[int, ...]
     poses: tuple[Placement, ...]
+    at_rest: tuple[tuple[Moments, Link], ...] = ()
 
     def rehoused(
         self, wrenches: Iterable[tuple[Vector, Vector]], crossed: Sequence[Arm]
@@ -82,12 +94,20 @@ class Shortened(NamedTuple):
         return found
 
 
-def shortened(tree: KinematicTree) -> Shortened:
-    """The same M and h in fewer operations."""
+def shortened(tree: KinematicTree, *, whole: bool = False, turning: bool = True) -> Shortened:
+    """The same M and h in fewer operations.
+
+    Args:
+        tree: the walk's.
+        whole: keep also the moments that neither M nor h feels, so that the momentum is the same, too.
+        turning: whether links that are welded to others turn with them; otherwise only their origins and
+            their velocities are right, and their axes any.
+    """
     if tree.levelled:
         # angles measured from ground leave no choice
         same = (Placement(ZERO, IDENTITY_MATRIX),) * len(tree.links)
-        return Shortened(tree.regrouped(), tuple(range(len(tree.links))), same)
+        short, at_rest = _regrouped(tree, whole)
+        return Shortened(short, tuple(range(len(tree.links))), same, at_rest)
     apart = expanded(tree)
     children = _children(apart.tree.links)
     links, turns = _turned(list(apart.tree.links), children)
@@ -96,8 +116,16 @@ def shortened(tree: KinematicTree) -> Shortened:
     for k, turn in zip(apart.last, apart.turns, strict=True):
         moved = Placement(rotation_of(turns[k]).out(shifts[k]), turns[k])
         poses.append(compose(Placement(ZERO, turn.matrix()), moved, DUST))
-    short = replace(tree, links=tuple(links)).regrouped()
-    return Shortened(_stilled(short, children), apart.last, tuple(poses))
+    short, at_rest = _regrouped(replace(tree, links=tuple(links)), whole)
+    return Shortened(_stilled(short, children, turning), apart.last, tuple(poses), at_rest)
+
+
+def _regrouped(
+    tree: KinematicTree, whole: bool
+) -> tuple[KinematicTree, tuple[tuple[Moments, Link], ...]]:
+    planar = [False] * len(tree.links) if whole else links_in_plane(tree.links)
+    links, at_rest = handed_on(tree.links, planar)
+    return replace(tree, links=tuple(links)), tuple(at_rest)
 
 
 def _children(links: Sequence[Link]) -> list[list[int]]:
@@ -129,7 +157,9 @@ def _known(entries: Iterable[Scalar]) -> bool:
 # keeping still
 
 
-def _stilled(tree: KinematicTree, children: Sequence[Sequence[int]]) -> KinematicTree:
+def _stilled(
+    tree: KinematicTree, children: Sequence[Sequence[int]], turning: bool
+) -> KinematicTree:
     """Say of each link whether its working axes turn with it."""
     links = tree.links
     lengths = _lengths_in_plane(links)
@@ -137,7 +167,9 @@ def _stilled(tree: KinematicTree, children: Sequence[Sequence[int]]) -> Kinemati
     for i, link in enumerate(links):
         short = link.in_plane and lengths[i] < LONG
         if children[i]:
-            still = not short and all(parallel(links[c]) for c in children[i])
+            loose = (not turning and links[c].joint.freedoms == 0 for c in children[i])
+            pairs = zip(children[i], loose, strict=True)
+            still = not short and all(free or parallel(links[c]) for c, free in pairs)
         else:
             given = [x != 0 for x in (*link.moments.first, *link.moments.second)]
             still = all(given[:2]) if short else link.in_plane or sum(given) >= FULL
@@ -207,8 +239,12 @@ def _candidates(children: Sequence[Link]) -> list[float]:
     found = [0.0]
     for child in children:
         m = child.rotation.matrix()
-        if any(x not in (0, 1, -1) for row in m for x in row) and _apart(m):
-            found.append(math.atan2(m[0][2], -m[1][2]))
+        if any(x not in (0, 1, -1) for row in m for x in row):
+            if _apart(m):
+                found.append(math.atan2(m[0][2], -m[1][2]))
+            elif child.joint.freedoms == 0 and upright(child):
+                # no joint turns it: the parent's angle is all that can
+                found.append(math.atan2(m[1][0], m[0][0]))
         if _known(child.at) and child.at[0] != 0 and child.at[1] != 0:
             found.append(math.atan2(child.at[1], child.at[0]))
     return found

@@ -34,7 +34,7 @@ OVERSIZE: dict[str, str] = {}
 """Files and functions that are bigger, each with its reason."""
 
 LAYERS: tuple[tuple[str, ...], ...] = (
-    ("errors", "version", "vector", "coupling", "outputs", "notation"),
+    ("errors", "version", "vector", "vectors", "coupling", "outputs", "notation"),
     ("domains", "files", "functions", "graph"),
     ("algebra", "expression", "formula", "jets"),
     ("differentiation", "residues"),
@@ -55,9 +55,9 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("kinematics",),
     ("expansion", "factorization", "spins", "walk"),
     ("orthogonality", "working_frames"),
-    ("articulated", "frames", "mass_matrix"),
-    ("composite_bias", "composite_slopes", "rows"),
-    ("closure",),
+    ("articulated", "frames", "mass_matrix", "tips"),
+    ("composite_bias", "composite_slopes", "rows", "twists"),
+    ("closure", "momenta"),
     ("scope", "search", "transfer"),
     ("loads",),
     ("edges", "paper", "regularity", "united"),
@@ -71,12 +71,12 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("drawing", "network_programs"),
     ("closed_programs", "edge_programs", "interpretation", "modelfile", "urdf"),
     ("prologue", "reading", "shared"),
-    ("loop_slopes", "pivots", "tangent"),
-    ("slopes",),
+    ("kinematic_programs", "loop_slopes", "pivots", "tangent"),
+    ("operational_programs", "slopes"),
     ("closed_derivatives",),
     ("derivative_programs",),
     ("programs",),
-    ("codegen", "trees"),
+    ("codegen", "golden", "trees"),
     ("appearance", "evaluation"),
     ("checking", "cli_options", "emission", "report"),
     ("cli",),
@@ -99,7 +99,9 @@ What shows a stage stands above it: methods that notebooks call, `_repr_svg_` an
 SHOWING = re.compile(r"_repr_[a-z]+_")
 
 NO_PHYSICS = {"graph": {"errors"}, "topology": {"errors", "graph"}}
-CODEGEN_SEES = {f"linegraph.{name}" for name in ("errors", "expression", "functions", "program")}
+CODEGEN_SEES = {
+    f"linegraph.{name}" for name in ("errors", "expression", "functions", "program", "vectors")
+}
 CLOSED_FORMS = (
     "dynamic",
     "equation_list",

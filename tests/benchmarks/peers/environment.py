@@ -34,7 +34,7 @@ VALGRIND = ("-mno-avx512f",)
 """Added where instructions are counted: valgrind knows no AVX-512."""
 
 
-def enter() -> None:
+def enter(script: Path = HERE) -> None:
     """Go on as the interpreter of the virtual environment; make it first if need be."""
     python = VENV / "bin" / "python"
     if Path(sys.prefix).resolve() == VENV.resolve():
@@ -51,7 +51,7 @@ def enter() -> None:
         subprocess.run([*install, *PACKAGES, "--editable", str(ROOT)], check=True)
         mark.write_text(wanted)
     os.environ["OMP_NUM_THREADS"] = "1"
-    os.execv(python, [str(python), str(HERE), *sys.argv[1:]])
+    os.execv(python, [str(python), str(script), *sys.argv[1:]])
 
 
 def say(text: str) -> None:

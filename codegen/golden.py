@@ -1,0 +1,171 @@
+"""Golden vectors as a program of each language that checks the emitted functions against them.
+
+The program stands beside what it checks and needs nothing else: in C no library but <math.h> and, unless it
+is told otherwise, <stdio.h>; in Python NumPy and pytest.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from codegen import layout, prose, templates
+from codegen.declare import block, comment
+from codegen.options import DEFAULT
+from codegen.printer import number
+from codegen.python import literal
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from codegen.options import Options
+    from linegraph.program import Module
+    from linegraph.vectors import Expected, Vectors
+
+DOUBLE = 1e-11
+"""Rounding of a double is 1e-16; sums, solutions and 13 written digits take some hundred times that."""
+
+SINGLE = 1e-4
+"""Rounding of a float is 6e-8, that of the given state included; the same again."""
+
+_WIDTH = 96
+
+
+def render(
+    module: Module, vectors: Vectors, language: str, options: Options = DEFAULT
+) -> dict[str, str]:
+    """The program that checks what `codegen.render` writes of a module: file name -> text."""
+    return {"c": _c, "python": _python}[language](module, vectors, options)
+
+
+def _c(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
+    statuses = layout.statuses(module)
+    given = {key: len(rows[0]) for key, rows in vectors.given.items()}
+    text = templates.fill(
+        "c/golden.c.jinja",
+        name=module.name,
+        macro=module.name.upper(),
+        states=vectors.states,
+        double=number(DOUBLE),
+        single=number(SINGLE),
+        about=block(_about(module, vectors, options)),
+        given=[
+            (key, size, _lines(x for row in vectors.given[key] for x in row))
+            for key, size in given.items()
+            if size
+        ],
+        values=[
+            (key, math.prod(v.shape), _lines(x for row in v.rows for x in row), _lines(v.scale))
+            for key, v in vectors.values.items()
+            if math.prod(v.shape)
+        ],
+        functions=[
+            {
+                "name": x.function,
+                "about": comment(x.route),
+                "given": [(key, given[key]) for key in x.given if key != "t"],
+                "call": ", ".join(_arguments_in_c(module, x)),
+                "results": [
+                    (result, key, math.prod(vectors.values[key].shape))
+                    for result, key in zip(_results(module, x), x.results, strict=True)
+                ],
+                "fails": _program(module, x).status or bool(statuses[x.function]),
+            }
+            for x in vectors.expected
+        ],
+    )
+    return {f"{module.name}_test.c": text}
+
+
+def _python(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
+    del options  # functions of many states are there in any case
+    text = templates.fill(
+        "python/golden.py.jinja",
+        name=module.name,
+        states=vectors.states,
+        tolerance=number(DOUBLE),
+        about=[line.replace("\\", "/") for line in _about(module, vectors, DEFAULT)],
+        given=[
+            (
+                key,
+                f"({vectors.states},)" if key == "t" else f"({vectors.states}, {len(rows[0])})",
+                _lines(x for row in rows for x in row),
+            )
+            for key, rows in vectors.given.items()
+        ],
+        values=[
+            (
+                key,
+                f"({', '.join(map(str, (vectors.states, *v.shape)))})",
+                f"({', '.join(map(str, v.shape))},)",
+                _lines(x for row in v.rows for x in row),
+                _lines(v.scale),
+            )
+            for key, v in vectors.values.items()
+        ],
+        functions=[
+            (x.function, _tuple(_keys(module, x)), _tuple(x.results), literal(x.route))
+            for x in vectors.expected
+        ],
+    )
+    return {f"test_{module.name}.py": text}
+
+
+def _program(module: Module, expected: Expected):  # type: ignore[no-untyped-def]
+    return next(p for p in module.programs if p.name == expected.function)
+
+
+def _keys(module: Module, expected: Expected) -> list[str]:
+    """For each argument what stands for it; the parameters are ``p``."""
+    keys = iter(expected.given)
+    return [a.name if a.name == "p" else next(keys) for a in _program(module, expected).arguments]
+
+
+def _results(module: Module, expected: Expected) -> list[str]:
+    return [result.name for result in _program(module, expected).results]
+
+
+def _arguments_in_c(module: Module, expected: Expected) -> list[str]:
+    single = {"p": f"&{module.name}_default_parameters", "t": "(real)given_t[state]"}
+    arguments = [single.get(key) or f"in_{key}" for key in _keys(module, expected)]
+    return [*arguments, *(f"out_{result}" for result in _results(module, expected))]
+
+
+def _about(module: Module, vectors: Vectors, options: Options) -> list[str]:
+    """What is compared with what, and what is not, in plain lines."""
+    lines = ["Compared are, with where the expected values came from:"]
+    for x in vectors.expected:
+        lines += _item(f"{x.function}: {x.route}.")
+    if vectors.untested:
+        lines += ["", "Not compared are:"]
+        for function, why in vectors.untested:
+            lines += _item(f"{function}: {why}.")
+    if options.batch:
+        lines += ["", "Functions of many states, whose names end in _batch, are not compared."]
+    if any("network" in text for text in module.about):
+        text = (
+            "Laws of networks, elements and loads are evaluated in numbers; their forces on bodies are "
+            "projected on the bodies' velocities."
+        )
+        lines += ["", *prose.paragraph(text)]
+    return lines
+
+
+def _item(text: str) -> list[str]:
+    return [f"    {line}" for line in prose.paragraph(text, 4)]
+
+
+def _tuple(names: Sequence[str]) -> str:
+    return f"({', '.join(map(literal, names))}{',' * (len(names) == 1)})"
+
+
+def _lines(entries: Iterable[float]) -> list[str]:
+    """Numbers, as many on a line as fit."""
+    lines: list[str] = []
+    line = ""
+    for entry in map(number, entries):
+        if line and len(line) + len(entry) > _WIDTH:
+            lines.append(line)
+            line = ""
+        line = f"{line} {entry},".lstrip()
+    return [*lines, line] if line else lines

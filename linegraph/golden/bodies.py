@@ -1,0 +1,171 @@
+"""Newton's and Euler's equations, body by body.
+
+Each body has the mass the model gives it, and by d'Alembert's principle
+
+    M = Σ Jᵀ I J        h = Σ Jᵀ (I v̇₀ + bias forces - gravity) - what acts
+
+with J the body's velocity by each of v, and v̇₀ its acceleration at v̇ = 0. Nothing is regrouped.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from linegraph.loads import efforts
+from linegraph.united import network_entries
+from linegraph.vector import ZERO, add, times
+
+if TYPE_CHECKING:
+    from linegraph.golden.walk import Moved, Valued, Walk
+    from linegraph.loads import Applied
+
+    Array = Any
+
+NOISE = 1e-3
+"""What an entry of mechanics is made of is at least this fraction of its largest neighbour's: rounding."""
+
+
+class _Heavy(NamedTuple):
+    """A body: mass, first moment and inertia about a point, in ground axes, and how that point moves."""
+
+    mass: float
+    first: Array
+    inertia: Array
+    moved: Moved
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """The bodies of a model at a state.
+
+    Attributes:
+        walk: how everything moves there.
+    """
+
+    walk: Walk
+
+    @cached_property
+    def _bodies(self) -> list[_Heavy]:
+        """Every body that moves, about its mass centre or, where none is given, its origin."""
+        np, resolve = self.walk.np, self.walk.numeric.resolve
+        model = self.walk.numeric.model
+        assert model is not None
+        found = []
+        for body in model.bodies.values():
+            link, pose = self.walk.tree.bodies[body.name]
+            if link < 0:
+                continue
+            about: Any = body.center or ZERO
+            about = tuple(float(resolve(x)) for x in about)
+            first = tuple(float(resolve(x)) for x in body.first or ZERO)
+            xx, xy, xz, yy, yz, zz = (float(resolve(x)) for x in body.inertia)
+            moved = self.walk.moved(link, add(pose.at, times(pose.rotation, about)), pose.rotation)
+            turn = moved.rotation
+            inertia = turn @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ turn.T
+            found.append(_Heavy(float(resolve(body.mass)), turn @ first, inertia, moved))
+        return found
+
+    @cached_property
+    def _gravity(self) -> Array:
+        return self.walk.np.array([float(x) for x in self.walk.tree.gravity])
+
+    @cached_property
+    def mass_matrix(self) -> Valued:
+        """M, with what networks store; networks by their laws in numbers."""
+        np, n = self.walk.np, len(self.walk.v)
+        total, diagonal = np.zeros((n, n)), np.zeros(n)
+        for body in self._bodies:
+            linear, angular = body.moved.linear[:, :-1], body.moved.angular[:, :-1]
+            force, torque = self._needed(body, linear, angular)
+            total += linear.T @ force + angular.T @ torque
+            # a slender body has none about its axis, but for the rounding of the rest
+            diagonal += np.linalg.norm(body.inertia) * np.square(angular).sum(axis=0)
+            diagonal += body.mass * np.square(linear).sum(axis=0)
+        for i, j, entry in network_entries(
+            self.walk.numeric.exchange(self.walk.q, self.walk.v), self.walk.numeric.algebra
+        ):
+            total[i, j] += float(entry)
+        diagonal = np.sqrt(np.maximum(diagonal, np.abs(np.diag(total))))
+        return total, np.maximum(np.abs(total), np.outer(diagonal, diagonal))
+
+    def _needed(self, body: _Heavy, linear: Array, angular: Array) -> tuple[Array, Array]:
+        """The force and torque for accelerations of a body at rest, by direction."""
+        cross = self.walk.np.cross
+        arms = self.walk.np.broadcast_to(body.first[:, None], linear.shape)
+        force = body.mass * linear + cross(angular, arms, axis=0)
+        return force, body.inertia @ angular + cross(arms, linear, axis=0)
+
+    @cached_property
+    def bias(self) -> Valued:
+        """h: what the bodies need at v̇ = 0, less what acts without inputs."""
+        np, n = self.walk.np, len(self.walk.v)
+        total, size = np.zeros(n), np.zeros(n)
+        for body in self._bodies:
+            moved, w = body.moved, body.moved.angular[:, -1]
+            turned = body.inertia @ w
+            pull = moved.pull - self._gravity
+            force, torque = self._needed(body, pull[:, None], moved.spin[:, None])
+            force = force[:, 0] + np.cross(w, np.cross(w, body.first))
+            torque = torque[:, 0] + np.cross(w, turned)
+            total += moved.linear[:, :-1].T @ force + moved.angular[:, :-1].T @ torque
+            weight = body.mass * np.linalg.norm(self._gravity) + np.linalg.norm(force)
+            spin = np.linalg.norm(torque) + np.linalg.norm(w) * np.linalg.norm(turned)
+            size += np.linalg.norm(moved.linear[:, :-1], axis=0) * weight
+            size += np.linalg.norm(moved.angular[:, :-1], axis=0) * spin
+        acting, parts = self._along(
+            self.walk.numeric.applied(self.walk.q, self.walk.v, driven=False)
+        )
+        size, first = size + parts, self.walk.tree.layout.mechanical
+        # of mechanics alone: what networks store may be of any size beside it
+        size[:first] = np.maximum(size[:first], NOISE * size[:first].max(initial=0.0))
+        return total - acting, size
+
+    def _along(self, acting: Applied | None) -> Valued:
+        """What forces on links and along joints do along v."""
+        np, n = self.walk.np, len(self.walk.v)
+        total = np.zeros(n)
+        if acting is None:
+            return total, np.zeros(n)
+        total += np.array([float(x) for x in acting.efforts])
+        size = np.abs(total)
+        for link, (force, torque) in enumerate(acting.wrenches):
+            moved = self.walk.moved(link)
+            f, m = (moved.rotation @ np.array([float(x) for x in w]) for w in (force, torque))
+            total += moved.linear[:, :-1].T @ f + moved.angular[:, :-1].T @ m
+            size += np.abs(moved.linear[:, :-1]).T @ np.abs(f)
+            size += np.abs(moved.angular[:, :-1]).T @ np.abs(m)
+        return total, size
+
+    @cached_property
+    def forces(self) -> Valued:
+        """Q of the inputs."""
+        np, numeric = self.walk.np, self.walk.numeric
+        driven, size = self._along(numeric.applied(self.walk.q, self.walk.v, driven=True))
+        chords = numeric.chords(self.walk.q, self.walk.v)
+        nothing = [0.0] * len(self.walk.v)
+        pushed = [float(x) for x in efforts(self.walk.tree, numeric.algebra, chords, nothing)]
+        return driven + pushed, size + np.abs(pushed)
+
+    @cached_property
+    def energy(self) -> Valued:
+        """Kinetic and potential energy, that of springs included; what networks store."""
+        np = self.walk.np
+        kinetic = potential = size = 0.0
+        for body in self._bodies:
+            moved = body.moved
+            u, w = moved.linear[:, -1:], moved.angular[:, -1:]
+            force, torque = self._needed(body, u, w)
+            kinetic += float((u.T @ force + w.T @ torque)[0, 0]) / 2
+            height = self._gravity @ (body.mass * moved.origin + body.first)
+            potential -= float(height)
+            size += abs(float(height))
+        acting = self.walk.numeric.applied(self.walk.q, self.walk.v, driven=False)
+        springs = float(acting.potential) if acting else 0.0
+        exchange = self.walk.numeric.exchange(self.walk.q, self.walk.v)
+        stored = [] if exchange is None else [float(exchange.energy())]
+        found = np.array([kinetic, potential + springs, *stored])
+        size += abs(springs)
+        least = NOISE * max(kinetic, size)
+        return found, np.array([max(kinetic, least), max(size, least), *map(abs, stored)])

@@ -1,0 +1,222 @@
+"""How everything moves, from where it is: positions differentiated along the motion.
+
+Where every link is at q is all that is taken from the derivation. Velocities and accelerations are the
+derivatives of that place, by jets: for every unit velocity, and for the velocities of the state. No velocity
+or bias of a joint, no frame turned or shortened and no node of the DAG enters.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from linegraph.algebra import Floats
+from linegraph.constraints.base import Pose
+from linegraph.jets import Jet, Jets, lifted
+from linegraph.layout import coordinates
+from linegraph.rotation import IDENTITY_MATRIX, product
+from linegraph.vector import ZERO, add, negate, times, transpose
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from linegraph.algebra import Algebra
+    from linegraph.joints import Joint
+    from linegraph.kinematics import KinematicTree
+    from linegraph.numeric import Numeric
+
+    Array = Any
+
+Valued = tuple[Any, Any]
+"""An array, and for each entry how large what it is made of is."""
+
+
+class Moved(NamedTuple):
+    """A frame in ground axes, for n velocities.
+
+    Attributes:
+        rotation: 3 x 3, to ground axes.
+        origin: 3.
+        angular, linear: 3 x (n + 1), its angular velocity and its origin's velocity for unit velocities, then
+            for those of the state.
+        spin, pull: 3, its angular acceleration and its origin's acceleration at v̇ = 0.
+    """
+
+    rotation: Array
+    origin: Array
+    angular: Array
+    linear: Array
+    spin: Array
+    pull: Array
+
+
+def coordinate_rates(tree: KinematicTree, algebra: Algebra, q: Any, v: Any) -> list[Any]:
+    """``q̇ = N(q) v`` by the algebra of quaternions, for scalars or arrays of velocities."""
+    rates: list[Any] = [0.0] * len(tree.positions)
+    for link in tree.links:
+        places = link.place.positions
+        if any(f.ratio != 1 or f.offset != 0 for f in places):
+            continue  # it follows another joint
+        at = tuple(q[f.index] for f in places)
+        own = tuple(v[f.index] for f in link.place.velocities)
+        for f, rate in zip(places, _rates(link.joint, algebra, at, own), strict=True):
+            rates[f.index] = rate
+    return rates
+
+
+def _rates(joint: Joint, algebra: Algebra, q: tuple[Any, ...], v: tuple[Any, ...]) -> Any:
+    """A joint's own q̇: a quaternion turns by ``q (ω/2, 0)``, vectors in head axes by ``q (v, 0) q*``."""
+    if len(q) > len(v):
+        turn, spin = q[-4:], v[-3:]
+        half = tuple(x / 2 for x in spin)
+        inverse = (*negate(turn[:3]), turn[3])
+        ahead = _quaternion(_quaternion(turn, (*v[:-3], 0)), inverse)[:3] if len(v) > 3 else ()
+        return (*ahead, *_quaternion(turn, (*half, 0)))
+    if joint.kind == "planar":
+        c, s = algebra.cos(q[2]), algebra.sin(q[2])
+        return (c * v[0] - s * v[1], s * v[0] + c * v[1], v[2])
+    if joint.kind == "compound":
+        found: list[Any] = []
+        for part, _ in joint.sequence():
+            here = slice(len(found), len(found) + part.freedoms)
+            found += _rates(part, algebra, q[here], v[here])
+        return found
+    return v
+
+
+def _quaternion(a: Any, b: Any) -> tuple[Any, ...]:
+    """The product of two quaternions (x, y, z, w)."""
+    x, y, z, w = a
+    i, j, k, r = b
+    return (
+        w * i + x * r + y * k - z * j,
+        w * j + y * r + z * i - x * k,
+        w * k + z * r + x * j - y * i,
+        w * r - x * i - y * j - z * k,
+    )
+
+
+@dataclass(frozen=True)
+class Walk:
+    """A model at a state, and how its links move.
+
+    Attributes:
+        numeric: the model in numbers, at a time and for inputs.
+        q, v: the state.
+    """
+
+    numeric: Numeric
+    q: Sequence[float]
+    v: Sequence[float]
+
+    @property
+    def tree(self) -> KinematicTree:
+        """What the coordinates are, and where they put the links."""
+        return self.numeric.tree
+
+    @cached_property
+    def np(self) -> Any:
+        """NumPy, loaded when it is needed."""
+        import numpy
+
+        return numpy
+
+    @cached_property
+    def _directions(self) -> Array:
+        """The velocities by direction, n x (n + 1): each one alone, then the state's."""
+        own = self.np.array([self.v], float).T
+        return self.np.hstack([self.np.eye(len(self.v)), own])
+
+    @cached_property
+    def rates(self) -> Valued:
+        """``N v``."""
+        np = self.np
+        by_direction = self._rates_by_direction
+        return by_direction[:, -1], np.abs(by_direction[:, :-1]) @ np.abs(self.v)
+
+    @cached_property
+    def _rates_by_direction(self) -> Array:
+        np, size = self.np, len(self.v) + 1
+        found = coordinate_rates(self.tree, Floats(), self.q, list(self._directions))
+        rows = [np.broadcast_to(np.asarray(x, float), size) for x in found]
+        return np.array(rows).reshape(len(self.q), size)
+
+    @cached_property
+    def _coordinates(self) -> tuple[Jet, ...]:
+        """The coordinates as they move in each direction; second derivatives are right for the last one."""
+        rates = self._rates_by_direction
+        moving = [Jet(float(x), float(dx), 0.0) for x, dx in zip(self.q, rates[:, -1], strict=True)]
+        second = coordinate_rates(self.tree, Jets(Floats()), moving, list(map(float, self.v)))
+        return tuple(
+            Jet(float(x), dx, lifted(change).dx)
+            for x, dx, change in zip(self.q, rates, second, strict=True)
+        )
+
+    def given(self, x: Jet) -> Jet:
+        """What moves as prescribed: not at all where one velocity is looked at alone."""
+        alone = self.np.zeros(len(self.v) + 1)
+        alone[-1] = x.dx
+        return Jet(x.x, alone, x.ddx)
+
+    @cached_property
+    def links(self) -> list[Pose]:
+        """Where the links are, as jets."""
+        jets = Jets(self.numeric.algebra)
+        found: list[Pose] = []
+        for link in self.tree.links:
+            if link.place.drive:
+                at = tuple(map(self.given, link.place.drive))
+            else:
+                at, _ = coordinates(link.place, self._coordinates, (0.0,) * len(self.v))
+            motion = link.joint.motion(jets, at, (0.0,) * link.joint.freedoms)
+            rotation, shift = motion.rotation.matrix(), motion.displacement
+            if not link.forward:
+                rotation = transpose(rotation)
+                shift = negate(times(rotation, shift))
+            near = self.at(found, link.parent, link.at, link.rotation.matrix())
+            whole = rotation if link.in_space else product(near.rotation, rotation)
+            found.append(Pose(whole, add(near.origin, times(near.rotation, shift))))
+        return found
+
+    def at(self, links: Sequence[Pose], link: int, at: Any, rotation: Any) -> Pose:
+        """A place on a link, -1 for ground."""
+        near = links[link] if link >= 0 else Pose(IDENTITY_MATRIX, ZERO)
+        origin = add(near.origin, times(near.rotation, at))
+        return Pose(product(near.rotation, rotation), origin)
+
+    def moved(self, link: int, at: Any = ZERO, rotation: Any = IDENTITY_MATRIX) -> Moved:
+        """How a place on a link moves: the derivatives of where it is."""
+        np = self.np
+        pose = self.at(self.links, link, at, rotation)
+        parts = self.parts([*(x for row in pose.rotation for x in row), *pose.origin])
+        turn, turning, bending = (np.asarray(x[:9]).reshape(3, 3, -1) for x in parts)
+        turn = turn[:, :, 0]
+        # Ω = Ṙ Rᵀ, and its derivative along the state's own motion
+        omega = np.einsum("ijd,kj->ikd", turning, turn)
+        last = turning[:, :, -1]
+        alpha = bending[:, :, -1] @ turn.T + last @ last.T
+        return Moved(
+            turn,
+            parts[0][9:, 0],
+            self._axial(omega),
+            parts[1][9:],
+            self._axial(alpha),
+            parts[2][9:, -1],
+        )
+
+    def parts(self, entries: Sequence[Any]) -> tuple[Array, Array, Array]:
+        """Values, first and second derivatives of jets, by direction."""
+        np, size = self.np, len(self.v) + 1
+        jets = [lifted(x) for x in entries]
+        parts = ([x.x for x in jets], [x.dx for x in jets], [x.ddx for x in jets])
+        x, dx, ddx = (
+            np.array([np.broadcast_to(np.asarray(y, float), size) for y in part]).reshape(-1, size)
+            for part in parts
+        )
+        return x, dx, ddx
+
+    def _axial(self, skew: Array) -> Array:
+        """The vector of a skew-symmetric matrix."""
+        half = (skew - self.np.swapaxes(skew, 0, 1)) / 2
+        return self.np.array([half[2, 1], half[0, 2], half[1, 0]])

@@ -1,0 +1,45 @@
+"""What docs/derivatives.md says is true: its program runs, its commands write, its counts are asserted."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from click.testing import CliRunner
+from test_cost import SLOPES_MOST
+
+from linegraph.cli import main
+from linegraph.programs import ON_REQUEST
+
+ROOT = Path(__file__).parent.parent
+TEXT = (ROOT / "docs" / "derivatives.md").read_text()
+
+
+def test_the_program_prints_the_poles() -> None:
+    (program,) = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=ROOT
+    )
+    poles = [float(x) for x in re.findall(r"-?\d+\.\d*", done.stdout)]
+    assert len(poles) == 4
+
+
+def test_the_command_writes_what_it_says(tmp_path: Path) -> None:
+    (command,) = re.findall(r"^    linegraph (emit .*)$", TEXT, re.MULTILINE)
+    words = command.replace("furuta.toml", str(ROOT / "examples/furuta/furuta.toml")).split()
+    words[-1] = str(tmp_path)
+    done = CliRunner().invoke(main, words)
+    assert done.exit_code == 0, done.output
+    header = (tmp_path / "furuta.h").read_text()
+    assert "furuta_linearize(" in header
+    assert "furuta_inverse_dynamics_derivatives(" in header
+
+
+def test_all_functions_and_counts_are_there() -> None:
+    for name in ON_REQUEST:
+        if "derivatives" in name or name == "linearize":
+            assert f"| `{name}` |" in TEXT
+    rows = re.findall(r"^\| (\w+)[^|]*\| (\d+) / \d+ \| (\d+) / \d+ \|$", TEXT, re.MULTILINE)
+    assert {name.lower(): (int(a), int(b)) for name, a, b in rows} == SLOPES_MOST
