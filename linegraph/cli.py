@@ -102,12 +102,17 @@ def emit(
     and with closed loops or constraints
       constraints, constraint_jacobian, constraint_rates, constraint_bias, project,
       complete, reduction, reduced_equations: the mechanism in its independent coordinates
-    and on request
-      frame_NAME_pose, _velocity, _jacobian, _jacobian_dot_v    with --frame, of a link or a frame
-      frame_NAME_operational_space, _operational_position       with --frame and --with
-      center_of_mass, momentum, centroidal_momentum_matrix, ... with --with
-      kinematics         all of these but those of operational space at once
-      power              with --with, the audit of through times across
+    and on request, --with FUNCTION
+      linearize          A and B of dx' = A dx + B du at any state, on the tangent space
+      inverse_dynamics_derivatives, forward_dynamics_derivatives    by q, v and a or u
+      inverse_dynamics_parameter_derivatives, forward_dynamics_parameter_derivatives
+      center_of_mass, center_of_mass_velocity, center_of_mass_jacobian
+      momentum, centroidal_momentum_matrix, centroidal_momentum_bias
+      operational_space, operational_position    Lambda, mu and Jbar of each --frame
+      kinematics         poses, Jacobians, mass centre and momentum that are asked for, at once
+      power              the audit of through times across
+    and for each --frame
+      frame_NAME_pose, frame_NAME_velocity, frame_NAME_jacobian, frame_NAME_jacobian_dot_v
     """
     with _explained():
         from linegraph.emission import emit as write

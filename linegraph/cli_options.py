@@ -14,24 +14,23 @@ if TYPE_CHECKING:
 
 LANGUAGES = ("c", "python")
 
-FURTHER = {
-    "power": "the audit of through times across over all edges",
-    "linearize": "A and B of x' = f(x, u) at any state",
-    "inverse_dynamics_derivatives": "of tau by q, v and a",
-    "forward_dynamics_derivatives": "of a by q, v and u",
-    "inverse_dynamics_parameter_derivatives": "of tau by the parameters",
-    "forward_dynamics_parameter_derivatives": "of a by the parameters",
-    "center_of_mass": "of all that moves",
-    "center_of_mass_velocity": "its velocity",
-    "center_of_mass_jacobian": "its Jacobian",
-    "momentum": "linear and, about the mass centre, angular",
-    "centroidal_momentum_matrix": "Ag of momentum = Ag v",
-    "centroidal_momentum_bias": "its rate at v' = 0",
-    "kinematics": "all of these and of each --frame at once, as is written by itself where several are asked "
-    "for",
-    "operational_space": "Lambda, mu and Jbar of each --frame",
-    "operational_position": "the same of its origin alone",
-}
+FURTHER = (
+    "linearize",
+    "inverse_dynamics_derivatives",
+    "forward_dynamics_derivatives",
+    "inverse_dynamics_parameter_derivatives",
+    "forward_dynamics_parameter_derivatives",
+    "center_of_mass",
+    "center_of_mass_velocity",
+    "center_of_mass_jacobian",
+    "momentum",
+    "centroidal_momentum_matrix",
+    "centroidal_momentum_bias",
+    "operational_space",
+    "operational_position",
+    "kinematics",
+    "power",
+)
 """What `emit` writes only where it is asked for."""
 
 FUNCTIONS = (
@@ -114,11 +113,10 @@ EMIT: tuple[Option, ...] = (
     click.option(
         "--with",
         "functions",
-        type=click.Choice(tuple(FURTHER)),
+        type=click.Choice(FURTHER),
         metavar="FUNCTION",
         multiple=True,
-        help="A further function to write; repeatable. "
-        f"{'; '.join(f'{name}: {what}' for name, what in FURTHER.items())}.",
+        help="Write this function of those on request, too; repeatable.",
     ),
     click.option(
         "--frame",
@@ -133,8 +131,8 @@ EMIT: tuple[Option, ...] = (
         type=click.Choice(FUNCTIONS),
         metavar="FUNCTION",
         multiple=True,
-        help="Write nothing but this function and what it calls; repeatable. "
-        f"One of {', '.join(FUNCTIONS)}.",
+        help="Write nothing but this function, any of those above, and what it calls; repeatable. All frames "
+        "are frames, all constraints constraints.",
     ),
     click.option(
         "--lang",
