@@ -44,6 +44,8 @@ class Notation:
         comment: the line that says a label.
         check: the lines that stop the function unless the first text is greater than the second.
         divided: the function that divides even by zero, its bracket included; empty where ``/`` does.
+        bracketed: whether brackets stand wherever operators of different precedence meet.
+        tolerance: a fraction that stands for the rounding of doubles, as it is for the language's numbers.
     """
 
     before: str
@@ -53,6 +55,8 @@ class Notation:
     comment: Callable[[str], str]
     check: Callable[[str, str, Check], list[str]]
     divided: str = ""
+    bracketed: bool = False
+    tolerance: Callable[[float], float] = float
 
 
 @dataclass(frozen=True)
@@ -138,7 +142,21 @@ class Printer:
 
     def check(self, check: Check) -> list[str]:
         """The lines of one check."""
-        return self.notation.check(self.text(check.node), self.text(check.bound), check)
+        return self.notation.check(self.text(check.node), self.bound(check), check)
+
+    def bound(self, check: Check) -> str:
+        """What must be exceeded."""
+        if check.fraction is None:
+            return self.text(check.bound)
+        fraction = self.notation.tolerance(check.fraction)
+        if not isinstance(check.bound, Node):
+            return number(fraction * check.bound)
+        text, level = self.held(check.bound)
+        if level < _PRODUCT:
+            text = f"({text})"
+        scale = number(fraction)
+        product = f"{text} * {scale}" if level == _PRODUCT else f"{scale} * {text}"
+        return f"({product})" if self.notation.bracketed else product
 
     def text(self, x: Operand) -> str:
         """An operand as it stands alone."""
@@ -173,18 +191,22 @@ class Printer:
         right, second = self.held(b)
         if commutes and first > level == second:
             left, first, right, second = right, second, left, first
-        if first < level:
+        if first < level or self.mixed(first, level):
             left = f"({left})"
-        if second <= level:
+        if second <= level or self.mixed(second, level):
             right = f"({right})"
         return f"{left}{sign}{right}", level
+
+    def mixed(self, own: int, level: int) -> bool:
+        """Whether an operand needs no brackets, and yet gets them."""
+        return self.notation.bracketed and own not in (level, _ATOM)
 
     def constant(self, left: str, first: int, sign: str, level: int, b: Number) -> str:
         """An operation whose second operand is a number.
 
         ``x + -2`` is ``x - 2`` and ``x * 2`` is ``2 * x``, to the last bit.
         """
-        if first < level:
+        if first < level or self.mixed(first, level):
             left = f"({left})"
         if level == _SUM and b < 0:
             return f"{left}{' - ' if sign == ' + ' else ' + '}{number(-b)}"
@@ -205,7 +227,8 @@ class Printer:
             known = self.known.get(a.index)
             return self.expression(a) if known is None else (known, _ATOM)
         text, own = self.held(a)
-        return f"-({text})" if own < _PRODUCT or text[0] == "-" else f"-{text}", _SIGNED
+        apart = own < _PRODUCT or text[0] == "-" or self.mixed(own, _SIGNED)
+        return f"-({text})" if apart else f"-{text}", _SIGNED
 
     def symbol(self, node: Node) -> str:
         """What is read: an element of an array, a parameter, or the time."""

@@ -88,7 +88,9 @@ EMIT: tuple[Option, ...] = (
         help="Folder for the files; made if need be.  [default: the current folder]",
     ),
     click.option(
-        "--name", metavar="NAME", help="Prefix of functions and files.  [default: the model's name]"
+        "--name",
+        metavar="NAME",
+        help="Name of the files, and prefix of functions.  [default: the model's name]",
     ),
     click.option(
         "--with",
@@ -125,6 +127,18 @@ EMIT: tuple[Option, ...] = (
         is_flag=True,
         help="Write functions of many states in C, too: equations_batch(n, q, v, M, h) and the like, with "
         "several states side by side in vector registers.",
+    ),
+    click.option(
+        "--real",
+        type=click.Choice(["double", "float"]),
+        default="double",
+        show_default=True,
+        help="The type of C's numbers; with float nothing is computed in doubles.",
+    ),
+    click.option(
+        "--prefix",
+        metavar="PREFIX",
+        help="Prefix of functions, types and macros in C.  [default: the files' name]",
     ),
 )
 """What `emit` takes besides."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from linegraph.derive import derive, placed
 from linegraph.errors import ModelError
@@ -36,9 +36,8 @@ def emit(
     folded: bool = False,
     functions: Iterable[str] = (),
     only: Iterable[str] = (),
-    trig: str = "libm",
-    batch: bool = False,
     progress: Callable[[str], None] | None = None,
+    **options: Any,
 ) -> list[Path]:
     """Derive a model and write its functions as source files.
 
@@ -50,9 +49,10 @@ def emit(
         folded: write the parameters' values into the code instead of keeping them symbolic.
         functions: further functions to write, of `programs.ON_REQUEST`.
         only: write nothing but these of `programs.PROGRAMS` and what they call.
-        trig: whose sine and cosine C calls, ``libm`` or ``inline``: those of the file itself.
-        batch: write functions of many states at once in C, too.
         progress: called with a short text before each stage.
+        **options: choices for C: ``trig`` ("libm" or "inline"), ``batch`` (functions of many states),
+            ``real`` ("double" or "float"), ``prefix`` (of functions, types and macros), ``cmake``,
+            ``arduino`` and ``report``, as `codegen.Options` says them.
 
     Returns:
         The files written. Nothing is written unless everything could be rendered.
@@ -76,9 +76,8 @@ def emit(
         folded=folded,
         functions=functions,
         only=only,
-        trig=trig,
-        batch=batch,
         progress=progress,
+        **options,
     )
     return write_all(out, files)
 
@@ -91,9 +90,8 @@ def render(
     folded: bool = False,
     functions: Iterable[str] = (),
     only: Iterable[str] = (),
-    trig: str = "libm",
-    batch: bool = False,
     progress: Callable[[str], None] | None = None,
+    **options: Any,
 ) -> dict[str, str]:
     """What `emit` writes, as {file name: text}."""
     import codegen
@@ -104,14 +102,14 @@ def render(
         if language not in codegen.LANGUAGES:
             known = ", ".join(codegen.LANGUAGES)
             raise ModelError(f'language "{language}"', f"is not known; known: {known}")
-    options = codegen.Options(trig, batch)
+    choices = codegen.options_of(options)
     prefix = codegen.naming.identifier(model.name) if name is None else name
     tell("deriving")
     module = module_for(model, prefix, folded=folded, functions=functions, only=only)
     files: dict[str, str] = {}
     for language in chosen:
         tell(f"writing {language}")
-        files |= codegen.render(module, language, options)
+        files |= codegen.render(module, language, choices)
     return files
 
 

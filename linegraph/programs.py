@@ -201,8 +201,8 @@ def _factored(f: Functions) -> Program:
 
 
 def _bound(pivot: Scalar, entry: Scalar) -> Scalar:
-    """What a pivot must exceed: rounding of what it was made of, or zero if it was not made of anything."""
-    return 0 if pivot is entry else SINGULAR * entry
+    """What a pivot is compared with: what it was made of, or zero if it was not made of anything."""
+    return 0 if pivot is entry else entry
 
 
 def _factored_cost(f: Functions) -> int:
@@ -225,7 +225,10 @@ def _solved(
         size = pivot if i < first else f.dag.function("abs", pivot)
         if isinstance(size, Node):
             about = f"the mass matrix is singular at {f.tree.velocities[i].name}"
-            checks.append(Check(size, bound if i < first else 0, i + 1, about))
+            limit = bound if i < first else 0
+            fraction = SINGULAR if isinstance(limit, Node) or limit else None
+            name = f"SINGULAR_AT_{f.tree.velocities[i].name}"
+            checks.append(Check(size, limit, i + 1, about, name, fraction))
     accelerations = tuple(solution.unknowns)
     result = Result("a", (len(accelerations),), accelerations, ARGUMENTS["a"])
     about = "Forward dynamics a = M(q)^-1 (Q(u) - h(q, v))."
