@@ -14,7 +14,9 @@ from codegen import (
     naming,
     prose,
     real,
+    report,
     routines,
+    stack,
     straight,
     templates,
 )
@@ -24,7 +26,7 @@ from codegen.printer import number
 from linegraph.program import Routine
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from codegen.options import Options
     from linegraph.program import Listing, Module, Program, Quantity
@@ -51,18 +53,6 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
         "ok": f"{macro}_{failures.OK}",
         "failures": _failures(module),
     }
-    header = templates.fill(
-        "c/header.h.jinja",
-        head=block(layout.head(module)),
-        counts=list(layout.counts(module).items()),
-        functions=[
-            (_document(module, x), declare.signature(module, x, statuses))
-            for x in module.programs
-        ],
-        batches=[(x.document, x.signature) for x in batches],
-        left_out=block(batch.left_out(module, batches)) if options.batch else [],
-        **common,
-    )
     kind = straight.Kind(inline=options.trig == "inline", real=options.real)
     functions = [x for program in module.programs for x in _define(module, program, statuses, kind)]
     wide = [x for found in batches for x in found.definitions]
@@ -77,8 +67,24 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
         elementwise=batch.elementwise(module, wide),
         **common,
     )
-    texts = {f"{file}.h": header, f"{file}.c": source}
-    return {path: real.written(text, options.real) for path, text in texts.items()}
+    source = real.written(source, options.real)
+    sizes = {f"{macro}_{name}": size for name, size in layout.counts(module).items()}
+    taken = stack.bounds(source, sizes)
+    header = templates.fill(
+        "c/header.h.jinja",
+        head=block(layout.head(module)),
+        deepest=max(taken.values(), default=0),
+        report=block(report.table(module, source, taken)) if options.report else [],
+        counts=list(layout.counts(module).items()),
+        functions=[
+            (_document(module, x, taken), declare.signature(module, x, statuses))
+            for x in module.programs
+        ],
+        batches=[(_with_stack(x, module, taken), x.signature) for x in batches],
+        left_out=block(batch.left_out(module, batches)) if options.batch else [],
+        **common,
+    )
+    return {f"{file}.h": real.written(header, options.real), f"{file}.c": source}
 
 
 def _define(
@@ -136,7 +142,18 @@ def _failures(module: Module) -> list[tuple[str, int, str]]:
     return [(f"{module.name.upper()}_{failures.OK}", 0, "the outputs are written"), *rows]
 
 
-def _document(module: Module, program: Program | Routine) -> list[str]:
+def _with_stack(found: batch.Batch, module: Module, taken: Mapping[str, int]) -> list[str]:
+    """The comment above a function of many states."""
+    return [*found.document, *block(_stack(taken[f"{module.name}_{found.name}_batch"]))]
+
+
+def _stack(size: int) -> list[str]:
+    return [f"Takes at most {size} bytes of stack."]
+
+
+def _document(
+    module: Module, program: Program | Routine, taken: Mapping[str, int]
+) -> list[str]:
     """The lines of the comment above a declaration."""
     lines = [*prose.paragraph(program.about), ""]
     for argument in program.arguments:
@@ -152,4 +169,4 @@ def _document(module: Module, program: Program | Routine) -> list[str]:
         lines += prose.paragraph(f"@return {ok} (0), or with all outputs untouched {texts}", 4)
     elif program.status:
         lines += prose.paragraph(f"@return {ok} (0): it cannot fail")
-    return block(lines)
+    return block([*lines, *_stack(taken[f"{module.name}_{program.name}"])])

@@ -32,6 +32,11 @@ _INFIX = {
 """What stands between the operands, how tightly it holds, and whether they may change places."""
 
 
+_BARE: dict[int, tuple[int, ...]] = {_SIGNED: (), _SUM: (), _PRODUCT: ()}
+_MIXED: dict[int, tuple[int, ...]] = {_SIGNED: (_SUM, _PRODUCT), _SUM: (_PRODUCT,), _PRODUCT: ()}
+"""Within what operators of which others get brackets that they do not need."""
+
+
 @dataclass(frozen=True)
 class Notation:
     """How a language writes what languages write differently.
@@ -107,6 +112,7 @@ class Printer:
     def __init__(self, program: Program, notation: Notation) -> None:
         """Nothing is known before the first line."""
         self.notation = notation
+        self.mixed = _MIXED if notation.bracketed else _BARE
         self.turned = program.turned
         self.guarded = program.guarded if notation.divided else frozenset[int]()
         self.known: dict[int, str] = {}
@@ -191,22 +197,19 @@ class Printer:
         right, second = self.held(b)
         if commutes and first > level == second:
             left, first, right, second = right, second, left, first
-        if first < level or self.mixed(first, level):
+        apart = self.mixed[level]
+        if first < level or first in apart:
             left = f"({left})"
-        if second <= level or self.mixed(second, level):
+        if second <= level or second in apart:
             right = f"({right})"
         return f"{left}{sign}{right}", level
-
-    def mixed(self, own: int, level: int) -> bool:
-        """Whether an operand needs no brackets, and yet gets them."""
-        return self.notation.bracketed and own not in (level, _ATOM)
 
     def constant(self, left: str, first: int, sign: str, level: int, b: Number) -> str:
         """An operation whose second operand is a number.
 
         ``x + -2`` is ``x - 2`` and ``x * 2`` is ``2 * x``, to the last bit.
         """
-        if first < level or self.mixed(first, level):
+        if first < level or first in self.mixed[level]:
             left = f"({left})"
         if level == _SUM and b < 0:
             return f"{left}{' - ' if sign == ' + ' else ' + '}{number(-b)}"
@@ -227,7 +230,7 @@ class Printer:
             known = self.known.get(a.index)
             return self.expression(a) if known is None else (known, _ATOM)
         text, own = self.held(a)
-        apart = own < _PRODUCT or text[0] == "-" or self.mixed(own, _SIGNED)
+        apart = own < _PRODUCT or text[0] == "-" or own in self.mixed[_SIGNED]
         return f"-({text})" if apart else f"-{text}", _SIGNED
 
     def symbol(self, node: Node) -> str:

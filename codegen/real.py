@@ -75,7 +75,7 @@ def written(text: str, real: str) -> str:
 
     Example:
         >>> written("const double x = 0.1 * sin(y); /* double */", "float")
-        'const float x = 0.1f * sinf(y); /* double */'
+        'const float x = 0.1F * sinf(y); /* double */'
     """
     return text if real == "double" else _WORDS.sub(_in_float, text)
 
@@ -98,7 +98,7 @@ def shortest(x: float) -> str:
 
     Example:
         >>> shortest(9.81), shortest(1.0), shortest(2 / 3)
-        ('9.81f', '1.0f', '0.6666667f')
+        ('9.81F', '1.0F', '0.6666667F')
     """
     nearest = _nearest(x)
     if nearest is None or (x and abs(nearest) < _SMALLEST):
@@ -112,7 +112,7 @@ def shortest(x: float) -> str:
         around = (value, math.nextafter(value, math.inf), math.nextafter(value, -math.inf))
         if all(_nearest(y) == nearest for y in (around if value else around[:1])):
             break
-    return f"{repr(float(text))}f"
+    return f"{float(text)!r}F"
 
 
 _SMALLEST = 2.0**-126

@@ -37,7 +37,7 @@ BATCHED = ("after_dynamics", "rhs")
 def helpers(module: Module) -> list[str]:
     """What the algorithms of a module share, in an order in which each knows those it uses."""
     used = [x for p in module.programs if isinstance(p, Routine) for x in HELPERS[p.algorithm]]
-    return list(dict.fromkeys(used))
+    return [x for x in dict.fromkeys(used) if x != "unit" or quaternions(module)]
 
 
 def quaternions(module: Module) -> tuple[int, ...]:

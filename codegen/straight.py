@@ -224,15 +224,15 @@ class _Writer:
         label = ""
         self.zero = False
         for item in part.items:
+            now = item.node.label if isinstance(item, Step) else label or "results"
+            if now != label:
+                label = now
+                lines.append(self.notation.comment(label or "no element"))
             for index in item.needs if missing else ():
                 if index in missing:
                     missing.remove(index)
                     lines.append(f"    const {self.type_of(index)} {known[index]} = {of[index]};")
             if isinstance(item, Step):
-                if item.node.label != label:
-                    label = item.node.label
-                    if label:
-                        lines.append(self.notation.comment(label))
                 name = f"t{self.count}"
                 self.count += 1
                 lines += self.assignment(item.node, name)

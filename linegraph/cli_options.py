@@ -140,6 +140,11 @@ EMIT: tuple[Option, ...] = (
         metavar="PREFIX",
         help="Prefix of functions, types and macros in C.  [default: the files' name]",
     ),
+    click.option(
+        "--report",
+        is_flag=True,
+        help="Say in the header what each function costs: operations by kind, variables, stack, lines.",
+    ),
 )
 """What `emit` takes besides."""
 

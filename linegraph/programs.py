@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from linegraph import closed_programs, edge_programs, network_programs, orthogonality
 from linegraph.articulated import forward_dynamics
 from linegraph.errors import ModelError
-from linegraph.expression import Node
+from linegraph.expression import Node, Operand
 from linegraph.factorization import Solution, solve
 from linegraph.program import (
     Argument,
@@ -220,12 +220,14 @@ def _solved(
 ) -> Program:
     first = f.tree.layout.mechanical
     checks = []
+    asked: set[tuple[int, Operand]] = set()
     for i, (pivot, bound) in enumerate(zip(solution.pivots, bounds, strict=True)):
         # what a network stores may be negative, behind an op-amp say; inertia may not
         size = pivot if i < first else f.dag.function("abs", pivot)
-        if isinstance(size, Node):
+        limit = bound if i < first else 0
+        if isinstance(size, Node) and (size.index, limit) not in asked:
+            asked.add((size.index, limit))
             about = f"the mass matrix is singular at {f.tree.velocities[i].name}"
-            limit = bound if i < first else 0
             fraction = SINGULAR if isinstance(limit, Node) or limit else None
             name = f"SINGULAR_AT_{f.tree.velocities[i].name}"
             checks.append(Check(size, limit, i + 1, about, name, fraction))
