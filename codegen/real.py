@@ -31,7 +31,7 @@ _DOUBLE = {
     "slack": "1e-2",
 }
 _FLOAT = {
-    "rank": "1e-4",
+    "rank": "1e-5",
     "pivot": "5e-5",
     "residual": "5e-5",
     "step": "5e-6",
