@@ -12,6 +12,7 @@ from codegen import (
     failures,
     layout,
     naming,
+    packages,
     prose,
     real,
     report,
@@ -36,6 +37,7 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
     """The header and the source of a module."""
     file = module.name
     if options.prefix is not None:
+        naming.validate_prefix(options.prefix)
         module = replace(module, name=options.prefix)
         naming.validate(module)
     statuses = layout.statuses(module)
@@ -84,7 +86,8 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
         left_out=block(batch.left_out(module, batches)) if options.batch else [],
         **common,
     )
-    return {f"{file}.h": real.written(header, options.real), f"{file}.c": source}
+    files = {f"{file}.h": real.written(header, options.real), f"{file}.c": source}
+    return packages.packed(module, file, files, options)
 
 
 def _define(
@@ -98,7 +101,9 @@ def _define(
     if program.handed:
         return [(head, routines.handed(module, program, "c", prefix))]
     if isinstance(program, Routine):
-        return [(head, routines.body(module, program, "c", prefix, small=real.TOLERANCES[kind.real]))]
+        return [
+            (head, routines.body(module, program, "c", prefix, small=real.TOLERANCES[kind.real]))
+        ]
     return straight.define(module, program, statuses, kind)
 
 
@@ -138,7 +143,9 @@ def _failures(module: Module) -> list[tuple[str, int, str]]:
     found = failures.constants(module)
     if not found and not any(program.status for program in module.programs):
         return []
-    rows = [(name, number, comment("; or ".join(about))) for (number, _), (name, about) in found.items()]
+    rows = [
+        (name, number, comment("; or ".join(about))) for (number, _), (name, about) in found.items()
+    ]
     return [(f"{module.name.upper()}_{failures.OK}", 0, "the outputs are written"), *rows]
 
 
@@ -151,9 +158,7 @@ def _stack(size: int) -> list[str]:
     return [f"Takes at most {size} bytes of stack."]
 
 
-def _document(
-    module: Module, program: Program | Routine, taken: Mapping[str, int]
-) -> list[str]:
+def _document(module: Module, program: Program | Routine, taken: Mapping[str, int]) -> list[str]:
     """The lines of the comment above a declaration."""
     lines = [*prose.paragraph(program.about), ""]
     for argument in program.arguments:

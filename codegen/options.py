@@ -50,10 +50,14 @@ class Options:
             if not isinstance(getattr(self, what), bool):
                 raise ModelError(what, f"is True or False, not {getattr(self, what)!r}")
         if self.real == "float" and (self.batch or self.trig == "inline"):
-            what = "functions of many states" if self.batch else "sines and cosines of the file itself"
+            what = (
+                "functions of many states" if self.batch else "sines and cosines of the file itself"
+            )
             raise ModelError('real "float"', f"has no {what}: leave one of the two out")
         if self.cmake and self.arduino:
-            raise ModelError("arduino", "has a layout of its own: emit for CMake into another folder")
+            raise ModelError(
+                "arduino", "has a layout of its own: emit for CMake into another folder"
+            )
 
 
 DEFAULT = Options()

@@ -10,8 +10,10 @@ from __future__ import annotations
 import math
 import re
 import struct
+from fractions import Fraction
 
 from linegraph.errors import ModelError
+from linegraph.functions import ARITY
 
 NAMES = ("double", "float")
 """The types to choose from."""
@@ -50,13 +52,11 @@ beside the size of its terms; step, still: corrections that change nothing any m
 which redundant constraints may contradict each other.
 """
 
-_FUNCTIONS = (
-    "acos asin atan atan2 ceil cos cosh exp fabs floor fmax fmin fmod log pow sin sinh sqrt tan tanh"
-)
+_FUNCTIONS = sorted({*ARITY, "fabs", "fmax", "fmin"} - {"abs", "max", "min", "sign"})
 _WORDS = re.compile(
     r"(?P<kept>/\*.*?\*/|\"(?:\\.|[^\"\\])*\")"
     r"|(?P<number>(?<![\w.])(?:\d+\.\d*(?:e[+-]?\d+)?|\d+e[+-]?\d+))"
-    rf"|(?P<function>(?<![\w>.])(?:{'|'.join(_FUNCTIONS.split())})(?=\())"
+    rf"|(?P<function>(?<![\w>.])(?:{'|'.join(_FUNCTIONS)})(?=\())"
     r"|(?P<type>\bdouble\b)|(?P<huge>\bHUGE_VAL\b)",
     re.DOTALL,
 )
@@ -108,9 +108,11 @@ def shortest(x: float) -> str:
     for digits in range(1, 10):
         text = f"{nearest:.{digits}g}"
         value = float(text)
-        # both neighbours, too: a compiler reads the decimal at once, not by way of a double
-        around = (value, math.nextafter(value, math.inf), math.nextafter(value, -math.inf))
-        if all(_nearest(y) == nearest for y in (around if value else around[:1])):
+        # a compiler reads the decimal at once, not by way of a double: rounding twice must not matter
+        around = [value]
+        if Fraction(text) != Fraction(value):
+            around += [math.nextafter(value, math.inf), math.nextafter(value, -math.inf)]
+        if all(_nearest(y) == nearest for y in around):
             break
     return f"{float(text)!r}F"
 

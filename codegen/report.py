@@ -44,7 +44,10 @@ def table(module: Module, source: str, bytes_of: Mapping[str, int]) -> list[str]
     )
     found = [*prose.paragraph(about), ""]
     for row in rows:
-        cells = [row[0].ljust(widths[0]), *(x.rjust(w) for x, w in zip(row[1:], widths[1:], strict=True))]
+        cells = [
+            row[0].ljust(widths[0]),
+            *(x.rjust(w) for x, w in zip(row[1:], widths[1:], strict=True)),
+        ]
         found.append(f"  {'  '.join(cells)}")
     return found
 

@@ -114,8 +114,11 @@ class _Writer:
             lines.append("    int status;")
         lines += [f"    (void){x.name};" for x in program.arguments if x.name not in self.used()]
         lines += [f"    (void){x.name};" for x in program.results if not x.entries]
+        returning = {x.name for x in self.module.programs if x.status}
         for call, may_fail in zip(program.calls, fails, strict=True):
-            lines += _called(f"{self.prefix}_{call.program}({_given(call)});", may_fail, self.ok)
+            ignored = "(void)" if call.program in returning and not may_fail else ""
+            text = f"{ignored}{self.prefix}_{call.program}({_given(call)});"
+            lines += _called(text, may_fail, self.ok)
         lines += self.sines() + main
         if program.status or self.statuses[program.name]:
             lines.append(f"    return {self.ok};")
@@ -177,7 +180,9 @@ class _Writer:
             fails = any(isinstance(item, Guard) for item in part.items)
             name = f"{self.prefix}_{self.program.name}{'_lanes' * self.kind.wide}_part{place}"
             start = f"{self.macro}_PART {'int' if fails else 'void'} {name}("
-            made.append((declare.head(start, declared), [*body, *[f"    return {self.ok};"] * fails]))
+            made.append(
+                (declare.head(start, declared), [*body, *[f"    return {self.ok};"] * fails])
+            )
             lines += _called(f"{name}({', '.join(names)});", fails, self.ok)
         return lines, made
 
@@ -328,7 +333,12 @@ def _called(call: str, may_fail: bool, ok: str) -> list[str]:
     """A call whose status, if it has one, ends the caller."""
     if not may_fail:
         return [f"    {call}"]
-    return [f"    status = {call}", f"    if (status != {ok}) {{", "        return status;", "    }"]
+    return [
+        f"    status = {call}",
+        f"    if (status != {ok}) {{",
+        "        return status;",
+        "    }",
+    ]
 
 
 def _notation(module: Module, kind: Kind) -> Notation:

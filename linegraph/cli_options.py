@@ -145,6 +145,16 @@ EMIT: tuple[Option, ...] = (
         is_flag=True,
         help="Say in the header what each function costs: operations by kind, variables, stack, lines.",
     ),
+    click.option(
+        "--cmake",
+        is_flag=True,
+        help="Write CMakeLists.txt, too: for add_subdirectory, or to install and find_package(NAME).",
+    ),
+    click.option(
+        "--arduino",
+        is_flag=True,
+        help="Write C as a library of Arduino's: NAME/library.properties, NAME/src, NAME/examples.",
+    ),
 )
 """What `emit` takes besides."""
 

@@ -7,6 +7,7 @@ functions very often at drawn states, and for a Cortex-M4, which QEMU runs.
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 from functools import cache
@@ -24,6 +25,8 @@ import test_random_networks
 from numpy.typing import NDArray
 
 import codegen
+import codegen.layout
+import codegen.real
 from linegraph import modelfile, urdf
 from linegraph.emission import module_for
 from linegraph.program import Routine
@@ -92,7 +95,9 @@ def _networks() -> dict[str, Callable[[], Model]]:
     def mixed(seed: int) -> Callable[[], Model]:
         return lambda: random_mixed.model_of(random_mixed.random_system(seed))
 
-    found = {f"network{seed}": network(seed) for seed in range(12) if f"network{seed}" not in NO_MODEL}
+    found = {
+        f"network{seed}": network(seed) for seed in range(12) if f"network{seed}" not in NO_MODEL
+    }
     return found | {f"mixed{seed}": mixed(seed) for seed in range(8)}
 
 
@@ -212,7 +217,7 @@ int main(void)
 {{
     number sum = 0;
 {prologue}
-    for (int s = 0; s < {count}; ++s) {{
+    for (int turn = 0; turn < {count}; ++turn) {{
 {calls}
     }}
     show("sum", 0, &sum, 1);
@@ -228,7 +233,10 @@ def harness(of: Module, states: Sequence[State], real: str, count: int = 0) -> s
     constants = next((p for p in of.programs if p.name == "prepare"), None)
     if constants is not None:
         entries = constants.results[0].shape[0]
-        prologue += [f"    number c[{entries}];", f"    {of.name}_prepare(&{of.name}_default_parameters, c);"]
+        prologue += [
+            f"    number c[{entries}];",
+            f"    {of.name}_prepare(&{of.name}_default_parameters, c);",
+        ]
         if not count:
             prologue.append(f'    show("prepare", 0, c, {entries});')
     for name, size in sizes.items():
@@ -236,9 +244,14 @@ def harness(of: Module, states: Sequence[State], real: str, count: int = 0) -> s
             prologue.append(f"    number {name}[{size or 1}] = {{0}};")
             calls.append(f"        for (int i = 0; i < {size}; ++i) {{ {name}[i] = draw(); }}")
         else:
-            rows = [", ".join(repr(float(x)) + "F" * (real == "float") for x in s.values[name]) for s in states]
+            rows = [
+                ", ".join(repr(float(x)) + "F" * (real == "float") for x in s.values[name])
+                for s in states
+            ]
             lines = ",\n".join(f"    {{{row or '0'}}}" for row in rows)
-            data.append(f"static const number {name}s[{len(states)}][{size or 1}] = {{\n{lines}\n}};")
+            data.append(
+                f"static const number {name}s[{len(states)}][{size or 1}] = {{\n{lines}\n}};"
+            )
     times = ", ".join(repr(s.t) + "F" * (real == "float") for s in states) or "0"
     data.append(f"static const number times[{len(states) or 1}] = {{{times}}};")
     for program in of.programs:
@@ -246,14 +259,21 @@ def harness(of: Module, states: Sequence[State], real: str, count: int = 0) -> s
             calls += _called(of, program, bool(count))
     body = DRAWING if count else SHOWING
     text = body.format(
-        data="\n".join(data), prologue="\n".join(prologue), count=count or len(states), calls="\n".join(calls)
+        data="\n".join(data),
+        prologue="\n".join(prologue),
+        count=count or len(states),
+        calls="\n".join(calls),
     )
     return HARNESS.format(name=of.name, real=real, body=text)
 
 
 def _called(of: Module, program: Program | Routine, draws: bool) -> list[str]:
     """The lines that call a function."""
-    texts = {"p": f"&{of.name}_default_parameters", "c": "c", "t": "(number)0.25" if draws else "times[s]"}
+    texts = {
+        "p": f"&{of.name}_default_parameters",
+        "c": "c",
+        "t": "(number)0.25" if draws else "times[s]",
+    }
     given = [texts.get(x.name, x.name if draws else f"{x.name}s[s]") for x in program.arguments]
     lines, outputs = [], []
     for k, result in enumerate(program.results):
@@ -287,7 +307,13 @@ def compiled(
 def run(command: Sequence[str], folder: Path) -> str:
     """What a command prints; it must succeed."""
     done = subprocess.run(
-        command, cwd=folder, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL, timeout=300
+        command,
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+        stdin=subprocess.DEVNULL,
+        timeout=300,
     )
     if done.returncode:
         raise AssertionError(f"{' '.join(command)}\n{done.stdout[-2000:]}\n{done.stderr[-4000:]}")
@@ -307,7 +333,13 @@ def on_cortex_m4(text: str, object_file: Path) -> str:
     folder = object_file.parent
     (folder / "harness.c").write_text(text)
     command = ["arm-none-eabi-gcc", "-std=c99", *CORTEX_M4, "--specs=rdimon.specs", "-nostartfiles"]
-    command += ["-T", str(BOARD / "memory.ld"), str(BOARD / "start.c"), "harness.c", object_file.name]
+    command += [
+        "-T",
+        str(BOARD / "memory.ld"),
+        str(BOARD / "start.c"),
+        "harness.c",
+        object_file.name,
+    ]
     run([*command, "-lm", "-o", "harness.elf"], folder)
     return run([*EMULATOR, "harness.elf"], folder)
 
@@ -316,6 +348,81 @@ def shown(text: str) -> list[tuple[str, int, Array]]:
     """What a harness has printed: function, status and output, one after the other."""
     rows = [line.split() for line in text.splitlines()]
     return [(row[0], int(row[1]), np.array([float(x) for x in row[2:]])) for row in rows]
+
+
+SHAKES = 8
+"""How many states off by rounding show how much a function makes of it."""
+
+ACCURACY = 1e-5
+"""How far floats may be off, as a part of the largest entry of the output."""
+
+ROUNDING = 2.0**-24
+LOST = 30
+"""How many times more than rounding of what a function is given its own may be."""
+
+
+def misfits(of: Module, states: int, double: str, real: str) -> list[str]:
+    """Where the results of floats are not those of doubles, as `harness` shows both.
+
+    Args:
+        of: the module.
+        states: how many there were for floats; for doubles, each is followed by `SHAKES` shaken ones.
+        double: what the harness for doubles has printed.
+        real: what the harness for floats has printed.
+
+    An output may be off by `ACCURACY` of its largest entry, and beyond this only where the function is badly
+    conditioned at this state:
+
+    - by `LOST` times what rounding of the state alone makes of the result of doubles: cancellation, or an
+      exponential function, of numbers that are floats;
+    - what solves with the mass matrix, by its condition number times rounding;
+    - `project`, since it stops where a gap is none, by as much as a gap of this size makes.
+    """
+    every, few = ([r for r in shown(text) if r[0] != "prepare"] for text in (double, real))
+    per = len(every) // (states * (1 + SHAKES))
+    assert per * states == len(few) > 0
+    found = []
+    for state in range(states):
+        rows = [every[(state * (1 + SHAKES) + k) * per :][:per] for k in range(1 + SHAKES)]
+        condition = _condition(of, rows[0])
+        for place, (name, status, wanted) in enumerate(rows[0]):
+            _, own, value = few[state * per + place]
+            around = [row[place] for row in rows[1:]]
+            if bool(status) != bool(own):
+                if all(bool(s) == bool(status) for _, s, _ in around):
+                    found.append(f"{name}: status {own}, of doubles {status}")
+                continue
+            if status or not np.isfinite(wanted).all():
+                continue  # neither can compute it
+            size = np.abs(wanted).max(initial=0.0)
+            moved = max(
+                (np.abs(x - wanted).max(initial=0.0) for _, s, x in around if not s), default=0.0
+            )
+            factor = GAP / ROUNDING if name.startswith("project") else LOST
+            allowed = ACCURACY * size + factor * moved
+            if SOLVING.match(name):
+                allowed += condition * ROUNDING * size
+            amiss = np.abs(value - wanted).max(initial=0.0)
+            if not amiss <= allowed:
+                found.append(f"{name}: off by {amiss:.1e} of {size:.1e}, allowed {allowed:.1e}")
+    return found
+
+
+GAP = float(codegen.real.TOLERANCES["float"]["closed"])
+SOLVING = re.compile("forward_dynamics|rhs|reactions$|drives|power|outputs")
+
+
+def _condition(of: Module, rows: Sequence[tuple[str, int, Array]]) -> float:
+    """The condition number of the mass matrix at a state, once its diagonal is made 1."""
+    n = len(of.velocities)
+    entries = next((x for name, _, x in rows if name == "mass_matrix"), np.ones(0))
+    if len(entries) != n * n or not np.isfinite(entries).all():
+        return 1.0
+    M = entries.reshape(n, n)
+    scale = np.sqrt(np.abs(np.diag(M)))
+    if not scale.all():
+        return 1.0
+    return float(np.linalg.cond(M / np.outer(scale, scale)))
 
 
 def missing(*tools: str) -> str:
