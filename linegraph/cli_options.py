@@ -108,7 +108,9 @@ EMIT: tuple[Option, ...] = (
         help="Folder for the files; made if need be.  [default: the current folder]",
     ),
     click.option(
-        "--name", metavar="NAME", help="Prefix of functions and files.  [default: the model's name]"
+        "--name",
+        metavar="NAME",
+        help="Name of the files, and prefix of functions.  [default: the model's name]",
     ),
     click.option(
         "--with",
@@ -160,6 +162,33 @@ EMIT: tuple[Option, ...] = (
         is_flag=True,
         help="Write golden vectors, too: NAME_test.c and test_NAME.py, which check the functions on the "
         "target against values found by another route.",
+    ),
+    click.option(
+        "--real",
+        type=click.Choice(["double", "float"]),
+        default="double",
+        show_default=True,
+        help="The type of C's numbers; with float nothing is computed in doubles.",
+    ),
+    click.option(
+        "--prefix",
+        metavar="PREFIX",
+        help="Prefix of functions, types and macros in C.  [default: the files' name]",
+    ),
+    click.option(
+        "--report",
+        is_flag=True,
+        help="Say in the header what each function costs: operations by kind, variables, stack, lines.",
+    ),
+    click.option(
+        "--cmake",
+        is_flag=True,
+        help="Write CMakeLists.txt, too: for add_subdirectory, or to install and find_package(NAME).",
+    ),
+    click.option(
+        "--arduino",
+        is_flag=True,
+        help="Write C as a library of Arduino's: NAME/library.properties, NAME/src, NAME/examples.",
     ),
 )
 """What `emit` takes besides."""
