@@ -24,7 +24,7 @@ LEVELS = ("-O0", "-O2", "-O3")
 MACHINES = {"gcc": ("gcc",), "arm": ("arm-none-eabi-gcc", *CORTEX_M4)}
 NAMES = tuple(targets.everything())
 
-MOST, SMALL = 3, 320
+MOST, SMALL = 3, 448
 """How many times what is measured may be stated, or how many bytes more."""
 
 
@@ -115,6 +115,12 @@ void arm_all(const double q[ARM_NQ])
 """
     found = stack.bounds(source, {"ARM_NV": 3, "ARM_NQ": 3})
     variables = 8 * 5 * 4 + 8 + 4
-    own = stack.CALL + 2 * 8 + variables * 5 // 4 + 8 * source.split("void")[0].count(";") - 8
+    own = (
+        stack.CALL
+        + 2 * 8
+        + variables * 5 // 4
+        + 8 * source.split("void", maxsplit=1)[0].count(";")
+        - 8
+    )
     assert found["helper"] == -(-own // 8) * 8
     assert found["arm_all"] > found["helper"]
