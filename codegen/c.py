@@ -138,15 +138,22 @@ def _names(macro: str, listing: Listing) -> tuple[str, str, str, list[str]]:
     return symbol, heading, f"{macro}_{listing.count}", entries
 
 
-def _failures(module: Module) -> list[tuple[str, int, str]]:
-    """Constants for statuses with their values and meanings, if any function returns one."""
+def _failures(module: Module) -> list[str]:
+    """The lines of constants for statuses, if any function returns one."""
     found = failures.constants(module)
     if not found and not any(program.status for program in module.programs):
         return []
-    rows = [
-        (name, number, comment("; or ".join(about))) for (number, _), (name, about) in found.items()
-    ]
-    return [(f"{module.name.upper()}_{failures.OK}", 0, "the outputs are written"), *rows]
+    rows = [(f"{module.name.upper()}_{failures.OK}", 0, "the outputs are written")]
+    rows += [(name, key[0], "; or ".join(about)) for key, (name, about) in found.items()]
+    lines: list[str] = []
+    for place, (name, number_, about) in enumerate(rows, 1):
+        comma = "," if place < len(rows) else ""
+        line = f"{name} = {number_}{comma} /* {comment(about)} */"
+        if len(line) > prose.WIDTH:
+            lines += ["/*", *block(prose.paragraph(about)), " */"]
+            line = f"{name} = {number_}{comma}"
+        lines.append(line)
+    return lines
 
 
 def _with_stack(found: batch.Batch, module: Module, taken: Mapping[str, int]) -> list[str]:

@@ -14,24 +14,28 @@ if TYPE_CHECKING:
     from linegraph.program import Module, Program, Routine
 
 _TARGETS = frozenset(
-    [
-        "all",
-        "ALL_BUILD",
-        "clean",
-        "edit_cache",
-        "help",
-        "install",
-        "list_install_components",
-        "m",
-        "package",
-        "package_source",
-        "rebuild_cache",
-        "RUN_TESTS",
-        "test",
-        "ZERO_CHECK",
-        "INSTALL",
+    (
+        *(
+            "all",
+            "ALL_BUILD",
+            "clean",
+            "edit_cache",
+            "help",
+            "install",
+            "list_install_components",
+            "m",
+        ),
+        *(
+            "package",
+            "package_source",
+            "rebuild_cache",
+            "RUN_TESTS",
+            "test",
+            "ZERO_CHECK",
+            "INSTALL",
+        ),
         "PACKAGE",
-    ]
+    )
 )
 """What targets of CMake cannot be called, and the mathematics library."""
 

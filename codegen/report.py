@@ -27,7 +27,7 @@ def table(module: Module, source: str, bytes_of: Mapping[str, int]) -> list[str]
         bytes_of: the stack of each function.
     """
     texts = stack.functions(source)
-    rows = [("function", *_HEADINGS)]
+    rows: list[tuple[str, ...]] = [("function", *_HEADINGS)]
     for program in module.programs:
         name = f"{module.name}_{program.name}"
         own = [text for part, text in texts.items() if _is_part(part, name)]
@@ -37,10 +37,11 @@ def table(module: Module, source: str, bytes_of: Mapping[str, int]) -> list[str]
         rows.append((program.name, *_operations(program), *map(str, numbers)))
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     about = (
-        "Cost of each function: operations by kind and calls of mathematical functions, each carried out once "
-        "a call, those of functions it calls not counted; - where a function iterates or only calls others. "
-        "Variables: named intermediate results. Stack: bytes at most, callees included. Lines: of source, parts "
-        "included. Instructions depend on the compiler: compile, then count what objdump -d shows of a function."
+        "Cost of each function: operations by kind and calls of mathematical functions, each carried out "
+        "once a call, those of functions it calls not counted; - where a function iterates or only calls "
+        "others. Variables: named intermediate results. Stack: bytes at most, callees included. Lines: of "
+        "source, parts included. Instructions depend on the compiler: compile, then count what objdump -d "
+        "shows of a function."
     )
     found = [*prose.paragraph(about), ""]
     for row in rows:

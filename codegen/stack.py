@@ -1,8 +1,8 @@
 """How much stack the functions of an emitted C file take at most, read off the file's own text.
 
-A function's frame has its variables, its arguments and what a call costs. Without optimisation a compiler gives
-every variable a place of its own; with it, registers take most of them, so that the same sum is an upper
-bound for both. To a frame comes the deepest of those it calls. Nothing calls itself.
+A function's frame has its variables, its arguments and what a call costs. Without optimisation a compiler
+gives every variable a place of its own; with it, registers take most of them, so that the same sum is an
+upper bound for both. To a frame comes the deepest of those it calls. Nothing calls itself.
 """
 
 from __future__ import annotations
@@ -32,7 +32,8 @@ _FUNCTION = re.compile(
     r"^[a-zA-Z][^\n;{}=]*?\b(\w+)\(([^;{}]*?)\)\n\{\n(.*?)^\}", re.DOTALL | re.MULTILINE
 )
 _VARIABLE = re.compile(
-    r"(?<=[\s(])(?<!static )(?:const )?(double|float|int|\w+_(?:lanes|bits|some)) (\*const )?(\w+)(?:\[([^\]]+)\])?(?= =|;)"
+    r"(?<=[\s(])(?:const )?(double|float|int|\w+_(?:lanes|bits|some)) "
+    r"(\*const )?(\w+)(?:\[([^\]]+)\])?(?= =|;)"
 )
 _WIDE = re.compile(r"_(?:lanes|bits|some)\b")
 _STATIC = re.compile(r"\bstatic const [^;]*;")

@@ -1,4 +1,4 @@
-"""Emitted C on other machines and in other numbers: many models, and a program that calls all their functions.
+"""Emitted C on other machines and in other numbers: many models, and a program that calls all functions.
 
 The program is generated from the module itself: every function is called at the same states and prints its
 outputs, whatever the type of the numbers. It is compiled for this machine, where it may also call the
@@ -29,13 +29,12 @@ import codegen.layout
 import codegen.real
 from linegraph import modelfile, urdf
 from linegraph.emission import module_for
-from linegraph.program import Routine
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from linegraph import Model
-    from linegraph.program import Module, Program
+    from linegraph.program import Module, Program, Routine
 
 ROOT = Path(__file__).parent.parent
 EXAMPLES = ROOT / "examples"
@@ -227,7 +226,7 @@ int main(void)
 
 
 def harness(of: Module, states: Sequence[State], real: str, count: int = 0) -> str:
-    """A program that shows the results of all functions at some states, or calls them at `count` drawn ones."""
+    """A program that shows what all functions give at some states, or calls them at `count` drawn ones."""
     sizes = sizes_of(of)
     prologue, calls, data = [], [], []
     constants = next((p for p in of.programs if p.name == "prepare"), None)

@@ -1,4 +1,4 @@
-"""Emitted C for controllers: what docs/embedding.md promises of floats, names, brackets, labels, MISRA and lint."""
+"""Emitted C for controllers: what docs/embedding.md says of floats, names, brackets, labels, MISRA, lint."""
 
 from __future__ import annotations
 

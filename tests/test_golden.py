@@ -187,7 +187,7 @@ def corrupted(text: str, function: str, old: str, new: str) -> str:
         ("inverse_dynamics", r"a\[3\]", "a[2]"),
         ("energy", r"E\[1\] = ", "E[1] = 1e-8 + "),
         ("coordinate_rates", r"= v\[0\]", "= 0.0 / 0.0 * v[0]"),
-        ("forward_dynamics", r"return 0;", "return 1;"),
+        ("forward_dynamics", r"return PANDA_OK;", "return 1;"),
     ],
 )
 def test_corrupted_c_fails(function: str, old: str, new: str, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""A hundred emitted models: no warning, no report of a sanitizer, no heap, and floats as good as floats can be.
+"""A hundred emitted models: no warning, no report of a sanitizer, no heap, floats as good as they can be.
 
 A dozen by default, all with ``--all-forms``.
 """

@@ -24,7 +24,7 @@ LEVELS = ("-O0", "-O2", "-O3")
 MACHINES = {"gcc": ("gcc",), "arm": ("arm-none-eabi-gcc", *CORTEX_M4)}
 NAMES = tuple(targets.everything())
 
-MOST, SMALL = 3, 320
+MOST, SMALL = 3, 448
 """How many times what is measured may be stated, or how many bytes more."""
 
 
