@@ -19,6 +19,7 @@ _SIZES = {
     "u": ("NU",),
     "phi": ("NP",),
     "J": ("NC", "NV"),
+    "Y": ("NV", "NPI"),
     "T": ("NV", "NI"),
     "Mr": ("NI", "NI"),
     **dict.fromkeys(("hr", "s", "w"), ("NI",)),

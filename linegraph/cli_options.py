@@ -31,8 +31,13 @@ FUNCTIONS = (
     "drives",
     "power",
     "outputs",
+    "regressor",
+    "inertial_parameters",
 )
 """What functions `emit` can be asked for."""
+
+ON_REQUEST = ("power", "regressor", "inertial_parameters")
+"""Those of them that are written only where they are asked for."""
 
 
 def with_options(options: tuple[Option, ...]) -> Option:
@@ -93,9 +98,12 @@ EMIT: tuple[Option, ...] = (
     click.option(
         "--with",
         "functions",
-        type=click.Choice(["power"]),
+        type=click.Choice(ON_REQUEST),
+        metavar="FUNCTION",
         multiple=True,
-        help="Further functions to write: power, the audit of through times across over all edges.",
+        help="Further function to write; repeatable. power: the audit of through times across over all "
+        "edges. regressor: Y of tau = Y pi, linear in masses, moments and friction. inertial_parameters: "
+        "the model's own pi.",
     ),
     click.option(
         "--only",

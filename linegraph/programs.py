@@ -5,7 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from linegraph import closed_programs, edge_programs, network_programs, orthogonality
+from linegraph import (
+    closed_programs,
+    edge_programs,
+    network_programs,
+    orthogonality,
+    parameter_programs,
+)
 from linegraph.articulated import forward_dynamics
 from linegraph.errors import ModelError
 from linegraph.expression import Node
@@ -61,7 +67,7 @@ def module_of(
     functions = Functions(derivation, folded or not parameters)
     asked = (*only,) or (*(set(PROGRAMS) - set(ON_REQUEST)), *wanted)
     made = _made(functions, [key for key in PROGRAMS if key in asked])
-    for key in only:
+    for key in (*only, *wanted):
         if not made[key]:
             raise ModelError(
                 f'function "{key}"', "is none of this model: it has nothing of the kind"
@@ -88,7 +94,12 @@ def module_of(
         parameters=() if folded else parameters,
         time=derivation.model.depends_on_time,
         programs=programs,
-        listings=(*whole, *closed, *edge_programs.listings(functions, chosen)),
+        listings=(
+            *whole,
+            *closed,
+            *edge_programs.listings(functions, chosen),
+            *parameter_programs.listings(functions, chosen),
+        ),
         counts=(
             *(closed_programs.counts(functions) if tree.closed else ()),
             *([(COUNT, constants)] if constants else []),
@@ -279,10 +290,12 @@ PROGRAMS: dict[str, Maker] = {
     "drives": edge_programs.drives,
     "power": edge_programs.power,
     "outputs": edge_programs.outputs,
+    "regressor": parameter_programs.regressor_program,
+    "inertial_parameters": parameter_programs.values_program,
 }
 """The register of emitted functions, in emitted order: what a user may ask for, and what makes them."""
 
-ON_REQUEST = ("power",)
+ON_REQUEST = ("power", "regressor", "inertial_parameters")
 """Emitted only where they are asked for."""
 
 
