@@ -183,6 +183,25 @@ def trees(
 
 @main.command()
 @_about_model
+def parameters(
+    model: str, base: str, locks: tuple[str, ...], parameters: str | None, snap: float
+) -> None:
+    """List the base parameters of MODEL: what of its masses and moments motion can tell apart.
+
+    Standard parameters are ten of each link (mass, first moment, inertia about its origin) and damping, dry
+    friction and rotor inertia of each joint. Printed are the independent ones, each with what has to be
+    added to it, and those without effect. Angles such as 1.5708 keep axes almost, not quite, parallel:
+    --snap 1e-4 makes them so.
+    """
+    with _explained():
+        from linegraph.derive import derive
+
+        derivation = derive(_read(model, base, locks, parameters, snap))
+        click.echo(str(derivation.base_parameters()), nl=False)
+
+
+@main.command()
+@_about_model
 @with_options((SET,))
 def assemble(
     model: str,
