@@ -228,8 +228,10 @@ def _text(x: Scalar) -> str:
 
 def _term(factor: str, names: Sequence[str]) -> str:
     """A summand with its sign: a factor, and what it is the factor of."""
+    if factor in ("1", "-1"):
+        return " ".join(f"{'-' if factor == '-1' else '+'} {name}" for name in names)
     whole = names[0] if len(names) == 1 else f"({' + '.join(names)})"
     if " " in factor:
         return f"+ ({factor})*{whole}"
     sign, bare = ("-", factor[1:]) if factor.startswith("-") else ("+", factor)
-    return f"{sign} {whole}" if bare == "1" else f"{sign} {bare}*{whole}"
+    return f"{sign} {bare}*{whole}"

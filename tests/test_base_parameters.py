@@ -8,6 +8,10 @@ from __future__ import annotations
 
 import math
 import random
+import re
+import subprocess
+import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,18 +24,18 @@ from spec_models import model_of
 
 from linegraph import Model, ModelError, derive, modelfile, urdf
 from linegraph.cli import main
+from linegraph.emission import module_for
 from linegraph.parameter_search import in_numbers, regressor_rows
 from linegraph.standard_parameters import axes
 from linegraph.traced import Traced, closed, given, kernel, reduced
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from linegraph.base_parameters import BaseParameters
     from linegraph.numeric import Numeric
 
     Array = Any
 
+ROOT = Path(__file__).parent.parent
 EXACT = 1e-12
 """Of Y pi - Y_b beta, relative to the largest torque; measured 4e-15, and 5e-13 for one robot with mimics."""
 GAP = 1e-8
@@ -57,7 +61,6 @@ TWENTY = (
         "iris",
         "kinova",
         "pr2",
-        "romeo",
         "so101",
     ),
     *("talos_full_v2", "talos_reduced", "tiago", "xarm7", "z1"),
@@ -377,6 +380,20 @@ def test_the_command() -> None:
     done = CliRunner().invoke(main, ["parameters", "examples/cauer_filter/cauer_filter.toml"])
     assert done.exit_code == 2
     assert "has no links that move" in done.output
+
+
+def test_the_example_of_the_documentation() -> None:
+    text = (ROOT / "docs" / "identification.md").read_text(encoding="utf-8")
+    code, table = (block.split("\n", 1)[1] for block in text.split("```")[1:4:2])
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert done.stderr == ""
+    assert done.stdout.strip() == table.strip()
+    (cost,) = re.findall(r"Y costs (\d+) operations for a Panda", text)
+    model = urdf.read(robot("panda"))
+    (program,) = module_for(model, "m", folded=True, only=["regressor"]).programs
+    assert program.operations == int(cost)
 
 
 # ---- linear algebra with symbols

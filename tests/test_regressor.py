@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import inspect
 from typing import TYPE_CHECKING, Any
 
@@ -292,3 +293,17 @@ def robot(name: str) -> Path:
 
 def panda() -> Model:
     return urdf.read(robot("panda"))
+
+
+def test_many_states_at_once_in_c(tmp_path: Path) -> None:
+    model, n = bent_arm(), 37
+    files = render(model, name="bent", folded=True, only=["regressor"], batch=True)
+    compiled = Compiled(files, "bent", tmp_path)
+    given = Emitted(model, tmp_path / "python", folded=True).states(n)
+    state = [np.ascontiguousarray(given[x]) for x in ("q", "v", "a")]
+    found = np.full((n, 2, 26), np.nan)
+    pointers = [x.ctypes.data_as(ctypes.c_void_p) for x in (*state, found)]
+    compiled.library["bent_regressor_batch"](ctypes.c_int(n), *pointers)
+    for k in range(n):
+        one = compiled.call("regressor", *(x[k] for x in state), out=[(2, 26)])
+        assert np.abs(found[k] - one).max() < 1e-14
