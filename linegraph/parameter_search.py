@@ -14,6 +14,7 @@ from linegraph.parameter_relations import PREFERRED, Member, Twist, null_vectors
 from linegraph.regressor import Station, by_motions
 from linegraph.standard_parameters import MOMENTS, Axis, axes, homes, quantities
 from linegraph.traced import WEAK, Traced, given
+from linegraph.vector import negate
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,6 +28,9 @@ Array = Any
 
 SAMPLES = 3
 """Random values of the model's parameters at which the geometry is judged."""
+
+SPREAD, TRIES = 0.5, 60
+"""By what share these differ from the model's own at most, and how many are tried."""
 
 DUST = 1e-14
 """Rounding of entries of rotations, and of lengths (m)."""
@@ -92,14 +96,28 @@ def _node(x: Scalar) -> Scalar:
 
 
 def _samples(derivation: Derivation) -> list[Numeric]:
-    """The model at random parameters of the size of its own."""
+    """The model at random parameters of the size of its own, closer to these where it is not defined.
+
+    Raises:
+        ModelError: it is not defined anywhere near.
+    """
     draw = random.Random(0)
     parameters = [p for p in derivation.model.parameters.values() if not p.derived]
-    found = []
-    for _ in range(SAMPLES if parameters else 1):
-        values = {p.name: (p.value or 1.0) * draw.uniform(0.6, 1.5) for p in parameters}
-        found.append(_numeric(derivation, values, draw))
-    return found
+    found: list[Numeric] = []
+    wanted = SAMPLES if parameters else 1
+    for attempt in range(TRIES):
+        spread = SPREAD / (1 + attempt / 5)
+        values = {
+            p.name: (p.value or 1.0) * draw.uniform(1 - spread, 1 + spread) for p in parameters
+        }
+        try:
+            found.append(_numeric(derivation, values, draw))
+        except (ModelError, ArithmeticError):
+            continue
+        if len(found) == wanted:
+            return found
+    problem = "its geometry is not defined for parameters near their own values"
+    raise ModelError(f'model "{derivation.model.name}"', problem)
 
 
 def _numeric(derivation: Derivation, values: dict[str, float], draw: random.Random) -> Numeric:
@@ -156,13 +174,17 @@ def _twists(link: Link, others: Sequence[Link]) -> tuple[Twist, ...]:
         joint = one.joint
         motions.append(joint.motion(Floats(), joint.rest(), (0.0,) * joint.freedoms))
     node, *values = motions
-    return tuple(
+    found = [
         Twist(
             _vector(node.angular[k], [value.angular[k] for value in values]),
             _vector(node.linear[k], [value.linear[k] for value in values]),
         )
         for k in range(link.joint.freedoms)
-    )
+    ]
+    if link.forward:
+        return tuple(found)
+    # crossed from its head: the other way round, the last one first
+    return tuple(Twist(negate(w), negate(u)) for w, u in reversed(found))
 
 
 # ---- numbers

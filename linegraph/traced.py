@@ -35,6 +35,11 @@ class Traced:
     Attributes:
         node: its expression.
         values, errors: its values, and how far they may be off.
+
+    Example:
+        >>> c, s = given(0.8, [0.8], 0.0), given(0.6, [0.6], 0.0)
+        >>> c * c + s * s, c * s - s * c
+        (1, 0)
     """
 
     __slots__ = ("errors", "node", "values")
@@ -201,7 +206,12 @@ def _first(rows: Sequence[Row], order: Sequence[int], kinds: Sequence[Any]) -> t
 
 
 def kernel(rows: Sequence[Row], count: int) -> list[Row]:
-    """A basis of all x with ``rows x = 0``, of so many entries."""
+    """A basis of all x with ``rows x = 0``, of so many entries.
+
+    Example:
+        >>> kernel([[1, 2, 0]], 3)
+        [[-2, 1, 0], [0, 0, 1]]
+    """
     done, pivots = reduced(rows)
     found = []
     for free in range(count):
@@ -216,7 +226,12 @@ def kernel(rows: Sequence[Row], count: int) -> list[Row]:
 
 
 def closed(rows: Sequence[Row], action: Callable[[Row], Row]) -> list[Row]:
-    """A basis of the smallest space that holds some rows and what an action makes of all its members."""
+    """A basis of the smallest space that holds some rows and what an action makes of all its members.
+
+    Example:
+        >>> closed([[1, 0, 0]], lambda row: [-row[1], row[0], 0])
+        [[1, 0, 0], [0, 1, 0]]
+    """
     basis, _ = reduced(rows)
     while True:
         more, _ = reduced([*basis, *map(action, basis)])

@@ -166,6 +166,24 @@ def test_friction_has_columns_and_springs_are_the_rest(tmp_path: Path) -> None:
     assert np.abs(rest - 3 * np.stack([0 * v[:, 1], given["q"][:, 1]], -1)).max() < 1e-14
 
 
+def test_friction_where_angles_are_measured_from_ground(tmp_path: Path) -> None:
+    """A joint's rate is then the difference of two velocities."""
+    model = Model("plane", gravity=(0, -9.81, 0))
+    one, two = (model.body(name, mass=1.0, mass_center=(0.1, 0, 0)) for name in ("one", "two"))
+    model.revolute("a", ("ground", one))
+    model.revolute("b", (one.frame("tip", (0.3, 0, 0)), two))
+    model.friction("f", joint="b", viscous=0.4, coulomb=0.5, width=2.0)
+    emitted = Emitted(variant(model, coordinates="absolute-angle"), tmp_path)
+    assert emitted.defect() < EXACT
+    given = emitted.states(3)
+    Y, v = emitted.call("regressor", given), given["v"]
+    assert not isinstance(Y, tuple)
+    place = list(emitted.module.PI_NAMES).index("b.damping")
+    rate = v[:, 1] - v[:, 0]
+    assert np.abs(Y[:, :, place] - np.stack([-rate, rate], -1)).max() < 1e-15
+    assert np.abs(Y[:, 1, place + 1] - np.tanh(rate / 2)).max() < 1e-15
+
+
 def test_parameters_of_a_following_joint_are_those_of_the_other(tmp_path: Path) -> None:
     model = Model("pair")
     one, two = (model.body(name, mass=1.0, mass_center=(0.1, 0, 0)) for name in ("one", "two"))
@@ -238,6 +256,9 @@ def test_agrees_with_pinocchio(file: Path, base: str, tmp_path: Path) -> None:
     blocks = [there.getJointId(link.joint.name) - 1 for link in links]
     if held:
         pytest.skip("what is locked is other links there")
+    pi = emitted.module.inertial_parameters()[: 10 * len(links)].reshape(-1, 10)
+    wanted = np.array([there.inertias[block + 1].toDynamicParameters() for block in blocks])
+    assert np.abs(pi - wanted).max() < EXACT * np.abs(wanted).max()
     for _ in range(3):
         q, v = pair.random_state(rng)
         a = rng.normal(size=pair.nv)
