@@ -23,6 +23,7 @@ from linegraph.standard_parameters import (
     link_values,
     quantities,
 )
+from linegraph.tied_columns import tied, ties
 from linegraph.working_frames import DUST
 
 if TYPE_CHECKING:
@@ -107,7 +108,7 @@ class _Split:
         return rows
 
     def _columns(self) -> list[Columns]:
-        """By the route and in the frames, those of the walk or the shortest, that take fewest operations."""
+        """By the route, in the frames (of the walk or the shortest) and with the sums that cost least."""
         f = self._f
         own = [home.pose for home in homes(f.tree)]
         walk = [Station(i, pose) for i, pose in enumerate(own)]
@@ -116,10 +117,13 @@ class _Split:
             Station(place, compose(inverse(moved), pose, DUST))
             for pose, place, moved in zip(own, short.places, short.poses, strict=True)
         ]
+        every = ties(f.derivation, f.tree, folded="p" not in f.head)
+        cheap = [tie for tie in every if tie.cheap]
         found = []
         for tree, crossed, stations in ((f.tree, f.arms, walk), (f.short, f.crossed, there)):
-            given = (tree, f.dag, crossed, stations, self._a)
-            found += [by_motions(*given), by_wrenches(*given)]
+            for route in (by_motions, by_wrenches):
+                columns = route(tree, f.dag, crossed, stations, self._a)
+                found += [columns, tied(columns, cheap), tied(columns, every)]
         return min(found, key=_cost)
 
     # -- values

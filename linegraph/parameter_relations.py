@@ -105,6 +105,24 @@ def null_vectors(members: Sequence[Member], gravity: Vector) -> dict[int, dict[i
     return found
 
 
+def handed(members: Sequence[Member]) -> dict[int, dict[int, dict[int, Scalar]]]:
+    """Of each link on a joint of one freedom what its parent can carry as well, whatever that can do.
+
+    The relations are between the link's own parameters and its parent's.
+    """
+    anything = Spans(_unit(6), _unit(10))
+    found = {}
+    for i, member in enumerate(members):
+        if member.parent >= 0 and member.indices and len(member.twists) == 1:
+            conditions, _ = _conditions([member], [anything])
+            found[i] = _shares(members, [i], conditions)
+    return found
+
+
+def _unit(count: int) -> list[Row]:
+    return [[int(i == k) for k in range(count)] for i in range(count)]
+
+
 def _groups(members: Sequence[Member]) -> list[list[int]]:
     """Links taken together: those of one parent whose joints of one freedom have one entry of v."""
     found: dict[Any, list[int]] = {}

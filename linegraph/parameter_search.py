@@ -88,6 +88,19 @@ def base_parameters(derivation: Derivation) -> BaseParameters:
     )
 
 
+def members_of(derivation: Derivation, tree: KinematicTree, *, own_values: bool) -> list[Member]:
+    """The links of a tree of the model, as relations see them.
+
+    Args:
+        derivation: of what.
+        tree: its links over some DAG, parameters symbols there, or the model's own values.
+        own_values: whether the latter.
+    """
+    samples = [derivation.numeric()] if own_values else _samples(derivation)
+    seen = axes(derivation.model, tree)
+    return _members(tree, [numeric.tree for numeric in samples], seen)
+
+
 def _node(x: Scalar) -> Scalar:
     return x.node if isinstance(x, Traced) else x
 

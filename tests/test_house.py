@@ -67,7 +67,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("symbols",),
     ("base_parameters", "dynamic", "numeric", "parameter_relations"),
     ("parameter_search",),
-    ("face",),
+    ("face", "tied_columns"),
     ("derive",),
     ("drawing", "network_programs"),
     ("closed_programs", "edge_programs", "interpretation", "modelfile", "urdf"),
