@@ -19,6 +19,7 @@ _SIZES = {
     "u": ("NU",),
     "phi": ("NP",),
     "J": ("NC", "NV"),
+    "Y": ("NV", "NPI"),
     "T": ("NV", "NI"),
     "Mr": ("NI", "NI"),
     **dict.fromkeys(("dtau_dq", "da_dq"), ("NV", "NT")),

@@ -29,6 +29,8 @@ FURTHER = (
     "operational_space",
     "operational_position",
     "kinematics",
+    "regressor",
+    "inertial_parameters",
     "power",
 )
 """What `emit` writes only where it is asked for."""
@@ -54,6 +56,9 @@ FUNCTIONS = (
 )
 """What functions `emit` can be asked for."""
 
+ON_REQUEST = ("power", "regressor", "inertial_parameters")
+"""Those of them that are written only where they are asked for."""
+
 
 def with_options(options: tuple[Option, ...]) -> Option:
     """A decorator that adds options to a command, in this order."""
@@ -64,6 +69,19 @@ def with_options(options: tuple[Option, ...]) -> Option:
         return command
 
     return add
+
+
+def assignment(text: str, option: str, default: float | None = None) -> tuple[str, float]:
+    """Split NAME=VALUE, or NAME where there is a default; a name may itself contain an equals sign."""
+    name, sign, value = text.rpartition("=")
+    if not sign and default is not None:
+        return text, default
+    try:
+        return name, float(value)
+    except ValueError:
+        raise click.BadParameter(
+            f"{value!r} is not a number (rad or m)", param_hint=option
+        ) from None
 
 
 ABOUT_MODEL: tuple[Option, ...] = (
