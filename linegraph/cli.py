@@ -68,7 +68,6 @@ def main() -> None:
       linegraph emit anymal.urdf --base floating --lang c --out build
       linegraph emit panda.urdf --lock panda_finger_joint1=0.02 --out build
       linegraph emit panda.urdf --frame panda_hand --with center_of_mass --out build
-      linegraph show panda.urdf
       linegraph derive crane.toml --output crane.html
 
     Exit status: 0 done; 1 a check has failed; 2 the model or the call is wrong, nothing written.
