@@ -13,11 +13,13 @@ import codegen_samples as samples
 import numpy as np
 import pytest
 import targets
+from click.testing import CliRunner
 from compiled import Compiled
 
 import codegen
 from codegen import Options, real
 from linegraph import Model
+from linegraph.cli import main
 from linegraph.emission import emit, module_for, render
 from linegraph.errors import ModelError, NameRefused
 
@@ -31,6 +33,7 @@ CHECKED = ("double_pendulum", "four_bar", "rolling_disc", "condenser_microphone"
 BRIEFLY = ("four_bar", "rolling_disc", "condenser_microphone", "mixed4")
 """Of these, what cppcheck takes seconds for; without --all-forms no others."""
 
+PENDULUM = targets.EXAMPLES / "double_pendulum" / "double_pendulum.toml"
 MATH = "a?(sin|cos|tan)h?|sqrt|fabs|fmax|fmin|exp|log|pow|atan2"
 
 
@@ -353,3 +356,48 @@ def test_only_the_mathematics_is_included() -> None:
     for name in CHECKED:
         text = "".join(emitted(name, "float").values())
         assert re.findall(r"#include (\S+)", text) == ['"model.h"', "<math.h>"]
+
+
+# ---- the command
+
+
+def called(*arguments: str) -> tuple[int, str]:
+    """Exit status and output of a call of the command."""
+    done = CliRunner().invoke(main, ["emit", str(PENDULUM), *arguments])
+    return done.exit_code, done.output
+
+
+def test_the_command_takes_all_of_it(tmp_path: Path) -> None:
+    status, said = called(
+        *("--out", str(tmp_path), "--lang", "c", "--name", "arm", "--prefix", "left"),
+        *("--real", "float", "--report", "--cmake"),
+    )
+    assert status == 0, said
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["CMakeLists.txt", "arm.c", "arm.h"]
+    header = (tmp_path / "arm.h").read_text()
+    assert "void left_mass_matrix(const left_parameters *p,\n" in header
+    assert "Cost of each function" in header
+    assert (
+        called("--out", str(tmp_path / "libraries"), "--lang", "c", "--name", "arm", "--arduino")[0]
+        == 0
+    )
+    assert (tmp_path / "libraries" / "arm" / "src" / "arm.c").is_file()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--prefix", "2nd"), "prefix '2nd' cannot be used"),
+        (("--real", "float", "--batch"), "leave one of the two out"),
+        (("--cmake", "--arduino"), "another folder"),
+        (("--cmake", "--name", "test"), "target of CMake's own"),
+    ],
+)
+def test_what_cannot_be_is_one_message(
+    arguments: tuple[str, ...], said: str, tmp_path: Path
+) -> None:
+    status, output = called("--out", str(tmp_path / "new"), *arguments)
+    assert status == 2
+    assert said in output
+    assert "Traceback" not in output
+    assert not (tmp_path / "new").exists()

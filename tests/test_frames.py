@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from emitted import load
+from test_pinocchio import readable
 
 from codegen import naming
-from linegraph import ModelError, derive, urdf
+from linegraph import urdf
 from linegraph.emission import render
 
 pytest.importorskip("pinocchio")
@@ -61,25 +62,6 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     names = [f"{file.parent.parent.name}-{file.stem}" for file in files]
     metafunc.parametrize("file", files, ids=names)
     metafunc.parametrize("base", ["fixed", "floating"])
-
-
-def readable(file: Path, base: str) -> tuple[Model, dict[str, float]]:
-    """The model, with the joints locked that move no inertia."""
-    held: dict[str, float] = {}
-    for _ in range(60):
-        try:
-            model = urdf.read(file, base=base, snap=0.0)
-            for name in held:
-                model.lock(name)
-            derive(model)
-        except ModelError as error:
-            joint = re.search(r'joint "([^"]+)"', str(error))
-            if joint is None or "singular" not in str(error):
-                pytest.skip(f"refused: {error}")
-            held[joint.group(1)] = 0.0
-        else:
-            return model, held
-    raise AssertionError(f"{file.name}: no regular mass matrix")
 
 
 def chosen(model: Model, pin: Any) -> list[str]:
@@ -151,7 +133,7 @@ def relative(found: np.ndarray, expected: np.ndarray) -> float:
 def test_agrees_with_pinocchio(
     file: Path, base: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    model, held = readable(file, base)
+    model, held = readable(file, base, 0.0)
     text = file.read_text()
     pin = peers.load_text(text, floating=base == "floating")
     pair = peers.Bridge(model, pin, peers.followers(text), held)
