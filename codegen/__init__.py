@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from codegen import c, golden, naming, python
-from codegen.options import DEFAULT, TRIG, Options
+from codegen.options import DEFAULT, REAL, TRIG, Options, options_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,7 +22,16 @@ _REGISTER: dict[str, Callable[[Module, Options], dict[str, str]]] = {
     "python": python.render,
 }
 
-__all__ = ["LANGUAGES", "TRIG", "Options", "naming", "render", "render_tests"]
+__all__ = [
+    "LANGUAGES",
+    "REAL",
+    "TRIG",
+    "Options",
+    "naming",
+    "options_of",
+    "render",
+    "render_tests",
+]
 
 LANGUAGES = tuple(_REGISTER)
 """The names of all languages, in the order in which they are declared."""

@@ -16,7 +16,14 @@ if TYPE_CHECKING:
     from codegen.straight import Definition
     from linegraph.program import Argument, Module, Result, Routine
 
-NAMES = ("mass_matrix", "bias", "equations", "inverse_dynamics", "forward_dynamics")
+NAMES = (
+    "mass_matrix",
+    "bias",
+    "equations",
+    "inverse_dynamics",
+    "forward_dynamics",
+    "regressor",
+)
 """The functions that users call for many states; those that may fail are named in the header as left out."""
 
 

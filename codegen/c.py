@@ -3,16 +3,31 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from codegen import batch, declare, layout, prose, routines, straight, templates
+from codegen import (
+    batch,
+    declare,
+    failures,
+    layout,
+    naming,
+    packages,
+    prose,
+    real,
+    report,
+    routines,
+    stack,
+    straight,
+    templates,
+)
 from codegen.declare import block, comment, string
 from codegen.options import DEFAULT
 from codegen.printer import number
 from linegraph.program import Routine
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from codegen.options import Options
     from linegraph.program import Listing, Module, Program, Quantity
@@ -20,29 +35,27 @@ if TYPE_CHECKING:
 
 def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
     """The header and the source of a module."""
+    file = module.name
+    if options.prefix is not None:
+        naming.validate_prefix(options.prefix)
+        module = replace(module, name=options.prefix)
+        naming.validate(module)
     statuses = layout.statuses(module)
     macro = module.name.upper()
     batches = batch.functions(module, statuses) if options.batch else []
     common = {
+        "file": file,
         "name": module.name,
         "macro": macro,
         "parameters": [(x.name, number(layout.default(x)), _remark(x)) for x in module.parameters],
         "names": [_names(macro, listing) for listing in layout.named(module)],
         "inline": options.trig == "inline",
+        "real": options.real,
+        "small": real.TOLERANCES[options.real],
+        "ok": f"{macro}_{failures.OK}",
+        "failures": _failures(module),
     }
-    header = templates.fill(
-        "c/header.h.jinja",
-        head=block(layout.head(module)),
-        counts=list(layout.counts(module).items()),
-        functions=[
-            (_document(module, x, statuses[x.name]), declare.signature(module, x, statuses))
-            for x in module.programs
-        ],
-        batches=[(x.document, x.signature) for x in batches],
-        left_out=block(batch.left_out(module, batches)) if options.batch else [],
-        **common,
-    )
-    kind = straight.Kind(inline=options.trig == "inline")
+    kind = straight.Kind(inline=options.trig == "inline", real=options.real)
     functions = [x for program in module.programs for x in _define(module, program, statuses, kind)]
     wide = [x for found in batches for x in found.definitions]
     source = templates.fill(
@@ -56,7 +69,25 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
         elementwise=batch.elementwise(module, wide),
         **common,
     )
-    return {f"{module.name}.h": header, f"{module.name}.c": source}
+    source = real.written(source, options.real)
+    sizes = {f"{macro}_{name}": size for name, size in layout.counts(module).items()}
+    taken = stack.bounds(source, sizes)
+    header = templates.fill(
+        "c/header.h.jinja",
+        head=block(layout.head(module)),
+        deepest=max(taken.values(), default=0),
+        report=block(report.table(module, source, taken)) if options.report else [],
+        counts=list(layout.counts(module).items()),
+        functions=[
+            (_document(module, x, taken), declare.signature(module, x, statuses))
+            for x in module.programs
+        ],
+        batches=[(_with_stack(x, module, taken), x.signature) for x in batches],
+        left_out=block(batch.left_out(module, batches)) if options.batch else [],
+        **common,
+    )
+    files = {f"{file}.h": real.written(header, options.real), f"{file}.c": source}
+    return packages.packed(module, file, files, options)
 
 
 def _define(
@@ -70,7 +101,9 @@ def _define(
     if program.handed:
         return [(head, routines.handed(module, program, "c", prefix))]
     if isinstance(program, Routine):
-        return [(head, routines.body(module, program, "c", prefix))]
+        return [
+            (head, routines.body(module, program, "c", prefix, small=real.TOLERANCES[kind.real]))
+        ]
     return straight.define(module, program, statuses, kind)
 
 
@@ -105,7 +138,34 @@ def _names(macro: str, listing: Listing) -> tuple[str, str, str, list[str]]:
     return symbol, heading, f"{macro}_{listing.count}", entries
 
 
-def _document(module: Module, program: Program | Routine, statuses: dict[int, str]) -> list[str]:
+def _failures(module: Module) -> list[str]:
+    """The lines of constants for statuses, if any function returns one."""
+    found = failures.constants(module)
+    if not found and not any(program.status for program in module.programs):
+        return []
+    rows = [(f"{module.name.upper()}_{failures.OK}", 0, "the outputs are written")]
+    rows += [(name, key[0], "; or ".join(about)) for key, (name, about) in found.items()]
+    lines: list[str] = []
+    for place, (name, number_, about) in enumerate(rows, 1):
+        comma = "," if place < len(rows) else ""
+        line = f"{name} = {number_}{comma} /* {comment(about)} */"
+        if len(line) > prose.WIDTH:
+            lines += ["/*", *block(prose.paragraph(about)), " */"]
+            line = f"{name} = {number_}{comma}"
+        lines.append(line)
+    return lines
+
+
+def _with_stack(found: batch.Batch, module: Module, taken: Mapping[str, int]) -> list[str]:
+    """The comment above a function of many states."""
+    return [*found.document, *block(_stack(taken[f"{module.name}_{found.name}_batch"]))]
+
+
+def _stack(size: int) -> list[str]:
+    return [f"Takes at most {size} bytes of stack."]
+
+
+def _document(module: Module, program: Program | Routine, taken: Mapping[str, int]) -> list[str]:
     """The lines of the comment above a declaration."""
     lines = [*prose.paragraph(program.about), ""]
     for argument in program.arguments:
@@ -114,9 +174,11 @@ def _document(module: Module, program: Program | Routine, statuses: dict[int, st
         extents = " x ".join(layout.shape(module, result))
         order = ", row-major" if len(result.shape) > 1 else ""
         lines += prose.paragraph(f"@param[out] {result.name} ({extents}{order}) {result.about}", 4)
-    if statuses:
-        failures = "; ".join(f"{status}: {about}" for status, about in sorted(statuses.items()))
-        lines += prose.paragraph(f"@return 0, or with all outputs untouched {failures}", 4)
+    ok = f"{module.name.upper()}_{failures.OK}"
+    found = failures.of(module, program)
+    if found:
+        texts = "; ".join(f"{name} ({number}): {about}" for number, about, name in found)
+        lines += prose.paragraph(f"@return {ok} (0), or with all outputs untouched {texts}", 4)
     elif program.status:
-        lines += prose.paragraph("@return 0: it cannot fail")
-    return block(lines)
+        lines += prose.paragraph(f"@return {ok} (0): it cannot fail")
+    return block([*lines, *_stack(taken[f"{module.name}_{program.name}"])])

@@ -7,6 +7,7 @@ is told otherwise, <stdio.h>; in Python NumPy and pytest.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from codegen import layout, prose, templates
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from codegen.options import Options
-    from linegraph.program import Module
+    from linegraph.program import Module, Program, Routine
     from linegraph.vectors import Expected, Vectors
 
 DOUBLE = 1e-11
@@ -39,12 +40,15 @@ def render(
 
 
 def _c(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
+    file, module = module.name, replace(module, name=options.prefix or module.name)
     statuses = layout.statuses(module)
     given = {key: len(rows[0]) for key, rows in vectors.given.items()}
     text = templates.fill(
         "c/golden.c.jinja",
+        file=file,
         name=module.name,
         macro=module.name.upper(),
+        real=options.real,
         states=vectors.states,
         double=number(DOUBLE),
         single=number(SINGLE),
@@ -74,7 +78,7 @@ def _c(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
             for x in vectors.expected
         ],
     )
-    return {f"{module.name}_test.c": text}
+    return {f"{file}_test.c": text}
 
 
 def _python(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
@@ -111,7 +115,7 @@ def _python(module: Module, vectors: Vectors, options: Options) -> dict[str, str
     return {f"test_{module.name}.py": text}
 
 
-def _program(module: Module, expected: Expected):  # type: ignore[no-untyped-def]
+def _program(module: Module, expected: Expected) -> Program | Routine:
     return next(p for p in module.programs if p.name == expected.function)
 
 

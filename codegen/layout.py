@@ -19,6 +19,7 @@ _SIZES = {
     "u": ("NU",),
     "phi": ("NP",),
     "J": ("NC", "NV"),
+    "Y": ("NV", "NPI"),
     "T": ("NV", "NI"),
     "Mr": ("NI", "NI"),
     **dict.fromkeys(("dtau_dq", "da_dq"), ("NV", "NT")),
@@ -97,7 +98,7 @@ def statuses(module: Module) -> dict[str, dict[int, str]]:
         if program.name not in found:
             own: dict[int, str] = {}
             if isinstance(program, Routine):
-                called, reasons = program.uses, list(program.statuses)
+                called, reasons = program.uses, [(x.number, x.about) for x in program.statuses]
             else:
                 called = tuple(call.program for call in program.calls)
                 reasons = [(check.status, check.about) for check in program.checks]

@@ -101,6 +101,19 @@ def validate(module: Module) -> None:
             )
 
 
+def validate_prefix(prefix: str) -> None:
+    """Refuse a prefix with which names would be none.
+
+    Raises:
+        NameRefused: says why, and what to use instead.
+    """
+    _accept("prefix", prefix)
+    if prefix.endswith("_"):
+        raise _refused("prefix", prefix, "functions' names would have two underscores in a row")
+    if prefix in reserved.FILES:
+        raise _refused("prefix", prefix, "it is the name of a header of C or a module of Python")
+
+
 def quote(text: str) -> str:
     """Any text, made fit to stand in a message: escaped, and cut where it is long."""
     return ascii(text) if len(text) <= 60 else f"{text[:60]!a}..."

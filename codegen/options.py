@@ -2,32 +2,79 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
 
+from codegen import real
 from linegraph.errors import ModelError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 TRIG = ("libm", "inline")
 """Whose sine and cosine C calls: the library's, or those of the emitted file itself."""
 
+REAL = real.NAMES
+"""The type of C's numbers."""
+
 
 @dataclass(frozen=True)
 class Options:
-    """Choices that concern one language and change no value beyond rounding.
+    """Choices that concern one language and change no value beyond rounding; all are about C alone.
 
     Attributes:
-        trig: one of `TRIG`; C only.
-        batch: whether there are functions of many states; C only, as all functions of Python are.
+        trig: one of `TRIG`.
+        batch: whether there are functions of many states, as all functions of Python are.
+        real: one of `REAL`.
+        prefix: of functions, types and macros; None for the module's name.
+        cmake: whether a project of CMake that builds, installs and exports a library comes with the files.
+        arduino: whether the files are laid out as a library of Arduino's.
+        report: whether the header says what each function costs.
     """
 
     trig: str = TRIG[0]
     batch: bool = False
+    real: str = REAL[0]
+    prefix: str | None = None
+    cmake: bool = False
+    arduino: bool = False
+    report: bool = False
 
     def __post_init__(self) -> None:
         """Raises `ModelError` for what is no choice."""
-        if self.trig not in TRIG:
-            raise ModelError(f'trig "{self.trig}"', f"is not known; known: {', '.join(TRIG)}")
-        if not isinstance(self.batch, bool):
-            raise ModelError("batch", f"is True or False, not {self.batch!r}")
+        for what, known in (("trig", TRIG), ("real", REAL)):
+            value = getattr(self, what)
+            if value not in known:
+                raise ModelError(f'{what} "{value}"', f"is not known; known: {', '.join(known)}")
+        for what in ("batch", "cmake", "arduino", "report"):
+            if not isinstance(getattr(self, what), bool):
+                raise ModelError(what, f"is True or False, not {getattr(self, what)!r}")
+        if self.real == "float" and (self.batch or self.trig == "inline"):
+            what = (
+                "functions of many states" if self.batch else "sines and cosines of the file itself"
+            )
+            raise ModelError('real "float"', f"has no {what}: leave one of the two out")
+        if self.cmake and self.arduino:
+            raise ModelError(
+                "arduino", "has a layout of its own: emit for CMake into another folder"
+            )
 
 
 DEFAULT = Options()
+
+
+def options_of(choices: Mapping[str, object]) -> Options:
+    """Options by name.
+
+    Raises:
+        ModelError: there is no option of this name, or not this choice.
+
+    Example:
+        >>> options_of({"real": "float"}).real
+        'float'
+    """
+    known = [field.name for field in fields(Options)]
+    for name in choices:
+        if name not in known:
+            raise ModelError(f'option "{name}"', f"is not known; known: {', '.join(known)}")
+    return Options(**choices)  # type: ignore[arg-type]

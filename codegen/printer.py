@@ -32,6 +32,11 @@ _INFIX = {
 """What stands between the operands, how tightly it holds, and whether they may change places."""
 
 
+_BARE: dict[int, tuple[int, ...]] = {_SIGNED: (), _SUM: (), _PRODUCT: ()}
+_MIXED: dict[int, tuple[int, ...]] = {_SIGNED: (_SUM, _PRODUCT), _SUM: (_PRODUCT,), _PRODUCT: ()}
+"""Within what operators of which others get brackets that they do not need."""
+
+
 @dataclass(frozen=True)
 class Notation:
     """How a language writes what languages write differently.
@@ -44,6 +49,8 @@ class Notation:
         comment: the line that says a label.
         check: the lines that stop the function unless the first text is greater than the second.
         divided: the function that divides even by zero, its bracket included; empty where ``/`` does.
+        bracketed: whether brackets stand wherever operators of different precedence meet.
+        tolerance: a fraction that stands for the rounding of doubles, as it is for the language's numbers.
     """
 
     before: str
@@ -53,6 +60,8 @@ class Notation:
     comment: Callable[[str], str]
     check: Callable[[str, str, Check], list[str]]
     divided: str = ""
+    bracketed: bool = False
+    tolerance: Callable[[float], float] = float
 
 
 @dataclass(frozen=True)
@@ -103,6 +112,7 @@ class Printer:
     def __init__(self, program: Program, notation: Notation) -> None:
         """Nothing is known before the first line."""
         self.notation = notation
+        self.mixed = _MIXED if notation.bracketed else _BARE
         self.turned = program.turned
         self.guarded = program.guarded if notation.divided else frozenset[int]()
         self.known: dict[int, str] = {}
@@ -138,7 +148,21 @@ class Printer:
 
     def check(self, check: Check) -> list[str]:
         """The lines of one check."""
-        return self.notation.check(self.text(check.node), self.text(check.bound), check)
+        return self.notation.check(self.text(check.node), self.bound(check), check)
+
+    def bound(self, check: Check) -> str:
+        """What must be exceeded."""
+        if check.fraction is None:
+            return self.text(check.bound)
+        fraction = self.notation.tolerance(check.fraction)
+        if not isinstance(check.bound, Node):
+            return number(fraction * check.bound)
+        text, level = self.held(check.bound)
+        if level < _PRODUCT:
+            text = f"({text})"
+        scale = number(fraction)
+        product = f"{text} * {scale}" if level == _PRODUCT else f"{scale} * {text}"
+        return f"({product})" if self.notation.bracketed else product
 
     def text(self, x: Operand) -> str:
         """An operand as it stands alone."""
@@ -173,9 +197,10 @@ class Printer:
         right, second = self.held(b)
         if commutes and first > level == second:
             left, first, right, second = right, second, left, first
-        if first < level:
+        apart = self.mixed[level]
+        if first < level or first in apart:
             left = f"({left})"
-        if second <= level:
+        if second <= level or second in apart:
             right = f"({right})"
         return f"{left}{sign}{right}", level
 
@@ -184,7 +209,7 @@ class Printer:
 
         ``x + -2`` is ``x - 2`` and ``x * 2`` is ``2 * x``, to the last bit.
         """
-        if first < level:
+        if first < level or first in self.mixed[level]:
             left = f"({left})"
         if level == _SUM and b < 0:
             return f"{left}{' - ' if sign == ' + ' else ' + '}{number(-b)}"
@@ -205,7 +230,8 @@ class Printer:
             known = self.known.get(a.index)
             return self.expression(a) if known is None else (known, _ATOM)
         text, own = self.held(a)
-        return f"-({text})" if own < _PRODUCT or text[0] == "-" else f"-{text}", _SIGNED
+        apart = own < _PRODUCT or text[0] == "-" or own in self.mixed[_SIGNED]
+        return f"-({text})" if apart else f"-{text}", _SIGNED
 
     def symbol(self, node: Node) -> str:
         """What is read: an element of an array, a parameter, or the time."""

@@ -9,11 +9,11 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from codegen import layout, templates
+from codegen import failures, layout, templates
 from linegraph.program import PREPARED_SUFFIX, Routine
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from linegraph.program import Module, Program
 
@@ -38,7 +38,7 @@ BATCHED = ("after_dynamics", "rhs")
 def helpers(module: Module) -> list[str]:
     """What the algorithms of a module share, in an order in which each knows those it uses."""
     used = [x for p in module.programs if isinstance(p, Routine) for x in HELPERS[p.algorithm]]
-    return list(dict.fromkeys(used))
+    return [x for x in dict.fromkeys(used) if x != "unit" or quaternions(module)]
 
 
 def quaternions(module: Module) -> tuple[int, ...]:
@@ -62,16 +62,23 @@ def body(
     language: str,
     prefix: str,
     quote: Callable[[str], str] = str,
+    small: Mapping[str, str] | None = None,
 ) -> list[str]:
-    """The lines of a routine's body; `quote` writes what a status means as a string."""
+    """The lines of a routine's body.
+
+    `quote` writes what a status means as a string; `small` are the tolerances of `real.TOLERANCES`.
+    """
     counts = layout.counts(module)
     text = templates.fill(
         f"{language}/routines/{routine.algorithm}.jinja",
         counts={"NC": 0, "NP": 0, "NI": 0, **counts},
         results=", ".join(result.name for result in routine.results),
         macro=module.name.upper(),
+        ok=f"{module.name.upper()}_{failures.OK}",
+        status=_constants(module, routine),
+        small=small or {},
         call=_calling(module, routine, prefix),
-        texts={status: quote(about) for status, about in routine.statuses},
+        texts={status: quote(about) for status, about, _ in routine.statuses},
         fails={name for name, found in layout.statuses(module).items() if found},
         **dict(routine.details),
     )
@@ -80,6 +87,12 @@ def body(
         names = (argument.name for argument in routine.arguments)
         lines[:0] = [f"    (void){x};" for x in names if not re.search(rf"\b{x}\b", text)]
     return lines
+
+
+def _constants(module: Module, routine: Routine) -> dict[int, str]:
+    """The named constants of a routine's own statuses."""
+    named = failures.constants(module)
+    return {x.number: named[x.number, x.name][0] for x in routine.statuses}
 
 
 def handed(module: Module, program: Program | Routine, language: str, prefix: str) -> list[str]:

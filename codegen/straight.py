@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from codegen import declare
+from codegen import declare, failures, real
 from codegen.angles import Angles
 from codegen.order import Entry, Guard, Step, arranged, paired
 from codegen.parts import cut, places
@@ -43,11 +43,13 @@ class Kind:
         number: their type.
         wide: whether a number is a register, with one number of each of several states.
         inline: whether sines and cosines are those of the file itself.
+        real: one of `real.NAMES`, for which the text is rewritten in the end.
     """
 
     number: str = "double"
     wide: bool = False
     inline: bool = False
+    real: str = "double"
 
 
 def define(
@@ -65,6 +67,7 @@ class _Writer:
     ) -> None:
         self.module, self.program, self.statuses, self.kind = module, program, statuses, kind
         self.prefix, self.macro = module.name, module.name.upper()
+        self.ok = f"{self.macro}_{failures.OK}"
         live = live_nodes(program)
         self.wide = _wide(program, live) if kind.wide else frozenset()
         special = kind.wide or kind.inline
@@ -74,7 +77,8 @@ class _Writer:
             Angles(items, self.wide if kind.wide else None) if kind.inline else Angles([], None)
         )
         self.angles, self.items = angles, angles.without(items)
-        self.printer = Printer(program, _NOTATION)
+        self.notation = _notation(module, kind)
+        self.printer = Printer(program, self.notation)
         self.count = 0
         self.zero = False
         self.read: set[str] = set()
@@ -110,11 +114,14 @@ class _Writer:
             lines.append("    int status;")
         lines += [f"    (void){x.name};" for x in program.arguments if x.name not in self.used()]
         lines += [f"    (void){x.name};" for x in program.results if not x.entries]
+        returning = {x.name for x in self.module.programs if x.status}
         for call, may_fail in zip(program.calls, fails, strict=True):
-            lines += _call(self.module, call, may_fail)
+            ignored = "(void)" if call.program in returning and not may_fail else ""
+            text = f"{ignored}{self.prefix}_{call.program}({_given(call)});"
+            lines += _called(text, may_fail, self.ok)
         lines += self.sines() + main
         if program.status or self.statuses[program.name]:
-            lines.append("    return 0;")
+            lines.append(f"    return {self.ok};")
         return [*made, (self.signature(), lines)]
 
     def signature(self) -> str:
@@ -143,7 +150,7 @@ class _Writer:
         arrays = f"sines[{angles.size}], cosines[{angles.size}]"
         if not angles.early:
             return [f"    {number} {arrays};"]
-        texts = [Printer(self.program, _NOTATION).text(angle) for angle in angles.early]
+        texts = [Printer(self.program, self.notation).text(angle) for angle in angles.early]
         texts += ["0.0"] * (angles.filled - len(texts))
         function = f"{self.prefix}_{'lanes' if self.kind.wide else 'all'}_sincos"
         return [
@@ -173,8 +180,10 @@ class _Writer:
             fails = any(isinstance(item, Guard) for item in part.items)
             name = f"{self.prefix}_{self.program.name}{'_lanes' * self.kind.wide}_part{place}"
             start = f"{self.macro}_PART {'int' if fails else 'void'} {name}("
-            made.append((declare.head(start, declared), [*body, *["    return 0;"] * fails]))
-            lines += _called(f"{name}({', '.join(names)});", fails)
+            made.append(
+                (declare.head(start, declared), [*body, *[f"    return {self.ok};"] * fails])
+            )
+            lines += _called(f"{name}({', '.join(names)});", fails, self.ok)
         return lines, made
 
     def parameters(
@@ -220,15 +229,15 @@ class _Writer:
         label = ""
         self.zero = False
         for item in part.items:
+            now = item.node.label if isinstance(item, Step) else label or "results"
+            if now != label:
+                label = now
+                lines.append(self.notation.comment(label or "no element"))
             for index in item.needs if missing else ():
                 if index in missing:
                     missing.remove(index)
                     lines.append(f"    const {self.type_of(index)} {known[index]} = {of[index]};")
             if isinstance(item, Step):
-                if item.node.label != label:
-                    label = item.node.label
-                    if label:
-                        lines.append(_NOTATION.comment(label))
                 name = f"t{self.count}"
                 self.count += 1
                 lines += self.assignment(item.node, name)
@@ -315,32 +324,42 @@ def _wide(program: Program, live: Iterable[Node]) -> frozenset[int]:
     return frozenset(found)
 
 
-def _call(module: Module, call: Call, may_fail: bool) -> list[str]:
-    names = ", ".join((*call.arguments, *(local.name for local in call.results)))
-    return _called(f"{module.name}_{call.program}({names});", may_fail)
+def _given(call: Call) -> str:
+    """What another function is called with."""
+    return ", ".join((*call.arguments, *(local.name for local in call.results)))
 
 
-def _called(call: str, may_fail: bool) -> list[str]:
+def _called(call: str, may_fail: bool, ok: str) -> list[str]:
     """A call whose status, if it has one, ends the caller."""
     if not may_fail:
         return [f"    {call}"]
-    return [f"    status = {call}", "    if (status != 0) {", "        return status;", "    }"]
-
-
-def _check(value: str, bound: str, check: Check) -> list[str]:
-    """Written so that NaN fails, too."""
     return [
-        f"    if (!({value} > {bound})) {{ /* {declare.comment(check.about)} */",
-        f"        return {check.status};",
+        f"    status = {call}",
+        f"    if (status != {ok}) {{",
+        "        return status;",
         "    }",
     ]
 
 
-_NOTATION = Notation(
-    before="    const double ",
-    after=";",
-    member="p->",
-    functions=FUNCTIONS,
-    comment=lambda label: f"    /* {declare.comment(label)} */",
-    check=_check,
-)
+def _notation(module: Module, kind: Kind) -> Notation:
+    """How C writes expressions and checks."""
+    named = {key: constant for key, (constant, _) in failures.constants(module).items()}
+
+    def check(value: str, bound: str, found: Check) -> list[str]:
+        """Written so that NaN fails, too."""
+        return [
+            f"    if (!({value} > {bound})) {{ /* {declare.comment(found.about)} */",
+            f"        return {named[found.status, found.name]};",
+            "    }",
+        ]
+
+    return Notation(
+        before="    const double ",
+        after=";",
+        member="p->",
+        functions=FUNCTIONS,
+        comment=lambda label: f"    /* {declare.comment(label)} */",
+        check=check,
+        bracketed=True,
+        tolerance=lambda fraction: real.tolerance(fraction, kind.real),
+    )

@@ -13,7 +13,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from linegraph.cli_options import ABOUT_MODEL, DERIVE, EMIT, GRAPH, SET, with_options
+from linegraph.cli_options import (
+    ABOUT_MODEL,
+    DERIVE,
+    EMIT,
+    GRAPH,
+    SET,
+    assignment,
+    with_options,
+)
 from linegraph.errors import LinegraphError, SourceErrors
 from linegraph.version import __version__
 
@@ -60,7 +68,6 @@ def main() -> None:
       linegraph emit anymal.urdf --base floating --lang c --out build
       linegraph emit panda.urdf --lock panda_finger_joint1=0.02 --out build
       linegraph emit panda.urdf --frame panda_hand --with center_of_mass --out build
-      linegraph show panda.urdf
       linegraph derive crane.toml --output crane.html
 
     Exit status: 0 done; 1 a check has failed; 2 the model or the call is wrong, nothing written.
@@ -102,12 +109,18 @@ def emit(
     and with closed loops or constraints
       constraints, constraint_jacobian, constraint_rates, constraint_bias, project,
       complete, reduction, reduced_equations: the mechanism in its independent coordinates
-    and on request
-      frame_NAME_pose, _velocity, _jacobian, _jacobian_dot_v    with --frame, of a link or a frame
-      frame_NAME_operational_space, _operational_position       with --frame and --with
-      center_of_mass, momentum, centroidal_momentum_matrix, ... with --with
-      kinematics         all of these but those of operational space at once
-      power              with --with, the audit of through times across
+    and on request, --with FUNCTION
+      linearize          A and B of dx' = A dx + B du at any state, on the tangent space
+      inverse_dynamics_derivatives, forward_dynamics_derivatives    by q, v and a or u
+      inverse_dynamics_parameter_derivatives, forward_dynamics_parameter_derivatives
+      center_of_mass, center_of_mass_velocity, center_of_mass_jacobian
+      momentum, centroidal_momentum_matrix, centroidal_momentum_bias
+      operational_space, operational_position    Lambda, mu and Jbar of each --frame
+      kinematics         poses, Jacobians, mass centre and momentum that are asked for, at once
+      regressor          Y of tau = Y pi, linear in masses, moments and friction; inertial_parameters: pi
+      power              the audit of through times across
+    and for each --frame
+      frame_NAME_pose, frame_NAME_velocity, frame_NAME_jacobian, frame_NAME_jacobian_dot_v
     """
     with _explained():
         from linegraph.emission import emit as write
@@ -190,6 +203,25 @@ def trees(
 
 @main.command()
 @_about_model
+def parameters(
+    model: str, base: str, locks: tuple[str, ...], parameters: str | None, snap: float
+) -> None:
+    """List the base parameters of MODEL: what of its masses and moments motion can tell apart.
+
+    Standard parameters are ten of each link (mass, first moment, inertia about its origin) and damping, dry
+    friction and rotor inertia of each joint. Printed are the independent ones, each with what has to be
+    added to it, and those without effect. Angles such as 1.5708 keep axes almost, not quite, parallel:
+    --snap 1e-4 makes them so.
+    """
+    with _explained():
+        from linegraph.derive import derive
+
+        derivation = derive(_read(model, base, locks, parameters, snap))
+        click.echo(str(derivation.base_parameters()), nl=False)
+
+
+@main.command()
+@_about_model
 @with_options((SET,))
 def assemble(
     model: str,
@@ -208,7 +240,7 @@ def assemble(
         from linegraph.derive import derive
         from linegraph.report import assembled
 
-        values = dict(_assignment(text, "--set") for text in held)
+        values = dict(assignment(text, "--set") for text in held)
         derivation = derive(_read(model, base, locks, parameters, snap))
         click.echo(assembled(derivation, derivation.placed_assembly(values)), nl=False)
 
@@ -255,7 +287,7 @@ def graph(
         from linegraph.drawing.files import picture, require_ending, write
 
         require_ending(output)
-        values = dict(_assignment(text, "--set") for text in held)
+        values = dict(assignment(text, "--set") for text in held)
         derivation = derive(_read(model, base, locks, parameters, snap))
         content = picture(derivation, output, hold=values, **choices)
         if output is None:
@@ -345,24 +377,11 @@ def _read(
 
     model = read(source, base=base, symbolic=parameters == "symbolic", snap=snap)
     for lock in locks:
-        joint, value = _assignment(lock, "--lock", 0.0)
+        joint, value = assignment(lock, "--lock", 0.0)
         model.lock(joint, value)
     for warning in model.warnings:
         click.echo(f"{click.style('warning:', fg='yellow', bold=True)} {warning}", err=True)
     return model
-
-
-def _assignment(text: str, option: str, default: float | None = None) -> tuple[str, float]:
-    """Split NAME=VALUE, or NAME where there is a default; a name may itself contain an equals sign."""
-    name, sign, value = text.rpartition("=")
-    if not sign and default is not None:
-        return text, default
-    try:
-        return name, float(value)
-    except ValueError:
-        raise click.BadParameter(
-            f"{value!r} is not a number (rad or m)", param_hint=option
-        ) from None
 
 
 @contextmanager

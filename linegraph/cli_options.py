@@ -14,24 +14,25 @@ if TYPE_CHECKING:
 
 LANGUAGES = ("c", "python")
 
-FURTHER = {
-    "power": "the audit of through times across over all edges",
-    "linearize": "A and B of x' = f(x, u) at any state",
-    "inverse_dynamics_derivatives": "of tau by q, v and a",
-    "forward_dynamics_derivatives": "of a by q, v and u",
-    "inverse_dynamics_parameter_derivatives": "of tau by the parameters",
-    "forward_dynamics_parameter_derivatives": "of a by the parameters",
-    "center_of_mass": "of all that moves",
-    "center_of_mass_velocity": "its velocity",
-    "center_of_mass_jacobian": "its Jacobian",
-    "momentum": "linear and, about the mass centre, angular",
-    "centroidal_momentum_matrix": "Ag of momentum = Ag v",
-    "centroidal_momentum_bias": "its rate at v' = 0",
-    "kinematics": "all of these and of each --frame at once, as is written by itself where several are asked "
-    "for",
-    "operational_space": "Lambda, mu and Jbar of each --frame",
-    "operational_position": "the same of its origin alone",
-}
+FURTHER = (
+    "linearize",
+    "inverse_dynamics_derivatives",
+    "forward_dynamics_derivatives",
+    "inverse_dynamics_parameter_derivatives",
+    "forward_dynamics_parameter_derivatives",
+    "center_of_mass",
+    "center_of_mass_velocity",
+    "center_of_mass_jacobian",
+    "momentum",
+    "centroidal_momentum_matrix",
+    "centroidal_momentum_bias",
+    "operational_space",
+    "operational_position",
+    "kinematics",
+    "regressor",
+    "inertial_parameters",
+    "power",
+)
 """What `emit` writes only where it is asked for."""
 
 FUNCTIONS = (
@@ -55,6 +56,9 @@ FUNCTIONS = (
 )
 """What functions `emit` can be asked for."""
 
+ON_REQUEST = ("power", "regressor", "inertial_parameters")
+"""Those of them that are written only where they are asked for."""
+
 
 def with_options(options: tuple[Option, ...]) -> Option:
     """A decorator that adds options to a command, in this order."""
@@ -65,6 +69,19 @@ def with_options(options: tuple[Option, ...]) -> Option:
         return command
 
     return add
+
+
+def assignment(text: str, option: str, default: float | None = None) -> tuple[str, float]:
+    """Split NAME=VALUE, or NAME where there is a default; a name may itself contain an equals sign."""
+    name, sign, value = text.rpartition("=")
+    if not sign and default is not None:
+        return text, default
+    try:
+        return name, float(value)
+    except ValueError:
+        raise click.BadParameter(
+            f"{value!r} is not a number (rad or m)", param_hint=option
+        ) from None
 
 
 ABOUT_MODEL: tuple[Option, ...] = (
@@ -109,16 +126,17 @@ EMIT: tuple[Option, ...] = (
         help="Folder for the files; made if need be.  [default: the current folder]",
     ),
     click.option(
-        "--name", metavar="NAME", help="Prefix of functions and files.  [default: the model's name]"
+        "--name",
+        metavar="NAME",
+        help="Name of the files, and prefix of functions.  [default: the model's name]",
     ),
     click.option(
         "--with",
         "functions",
-        type=click.Choice(tuple(FURTHER)),
+        type=click.Choice(FURTHER),
         metavar="FUNCTION",
         multiple=True,
-        help="A further function to write; repeatable. "
-        f"{'; '.join(f'{name}: {what}' for name, what in FURTHER.items())}.",
+        help="Write this function of those on request, too; repeatable.",
     ),
     click.option(
         "--frame",
@@ -133,8 +151,8 @@ EMIT: tuple[Option, ...] = (
         type=click.Choice(FUNCTIONS),
         metavar="FUNCTION",
         multiple=True,
-        help="Write nothing but this function and what it calls; repeatable. "
-        f"One of {', '.join(FUNCTIONS)}.",
+        help="Write nothing but this function, any of those above, and what it calls; repeatable. All frames "
+        "are frames, all constraints constraints.",
     ),
     click.option(
         "--lang",
@@ -162,6 +180,33 @@ EMIT: tuple[Option, ...] = (
         is_flag=True,
         help="Write golden vectors, too: NAME_test.c and test_NAME.py, which check the functions on the "
         "target against values found by another route.",
+    ),
+    click.option(
+        "--real",
+        type=click.Choice(["double", "float"]),
+        default="double",
+        show_default=True,
+        help="The type of C's numbers; with float nothing is computed in doubles.",
+    ),
+    click.option(
+        "--prefix",
+        metavar="PREFIX",
+        help="Prefix of functions, types and macros in C.  [default: the files' name]",
+    ),
+    click.option(
+        "--report",
+        is_flag=True,
+        help="Say in the header what each function costs: operations by kind, variables, stack, lines.",
+    ),
+    click.option(
+        "--cmake",
+        is_flag=True,
+        help="Write CMakeLists.txt, too: for add_subdirectory, or to install and find_package(NAME).",
+    ),
+    click.option(
+        "--arduino",
+        is_flag=True,
+        help="Write C as a library of Arduino's: NAME/library.properties, NAME/src, NAME/examples.",
     ),
 )
 """What `emit` takes besides."""

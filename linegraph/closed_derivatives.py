@@ -13,7 +13,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.closed_programs import independent, routine
+from linegraph.closed_programs import (
+    CONTRADICTION,
+    NO_INERTIA,
+    SINGULAR,
+    independent,
+    routine,
+)
 from linegraph.errors import ModelError
 from linegraph.program import Program, Result, Routine
 from linegraph.slopes import columns, matrix, of_motion, variables
@@ -52,7 +58,8 @@ def linearize(f: Functions) -> tuple[Program | Routine, ...]:
     )
     calls = ("forward_dynamics", "constrained_equations", "constrained_slopes", "reduction")
     given = ("q", "v", "u")
-    made = routine(f, "linearize", about, given, tuple(results), "linearization", (), calls)
+    statuses = (SINGULAR, NO_INERTIA, CONTRADICTION)
+    made = routine(f, "linearize", about, given, tuple(results), "linearization", statuses, calls)
     return (_slopes(f), made)
 
 

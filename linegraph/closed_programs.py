@@ -8,7 +8,7 @@ from linegraph import network_programs
 from linegraph.errors import ModelError
 from linegraph.layout import has_plain_rates
 from linegraph.parameters import resolver
-from linegraph.program import Argument, Listing, Program, Quantity, Result, Routine, reads
+from linegraph.program import Argument, Listing, Program, Quantity, Result, Routine, Status, reads
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -17,12 +17,18 @@ if TYPE_CHECKING:
     from linegraph.shared import Functions
     from linegraph.vector import Scalar
 
-SINGULAR = (1, "the position is singular: more motions are free here than elsewhere")
-NO_INERTIA = (2, "the mass matrix is singular on the motions that the constraints allow")
-CONTRADICTION = (3, "the constraints contradict each other")
-NOT_CLOSED = (1, "no position that satisfies the constraints was found")
-SLIPPING = (2, "the constraints of velocity contradict each other")
-NOT_DETERMINED = (2, "the independent coordinates do not determine the others here")
+SINGULAR = Status(
+    1, "the position is singular: more motions are free here than elsewhere", "SINGULAR_POSITION"
+)
+NO_INERTIA = Status(
+    2, "the mass matrix is singular on the motions that the constraints allow", "SINGULAR_INERTIA"
+)
+CONTRADICTION = Status(3, "the constraints contradict each other", "CONTRADICTION")
+NOT_CLOSED = Status(1, "no position that satisfies the constraints was found", "NOT_CLOSED")
+SLIPPING = Status(2, "the constraints of velocity contradict each other", "NO_VELOCITY")
+NOT_DETERMINED = Status(
+    2, "the independent coordinates do not determine the others here", "NOT_DETERMINED"
+)
 
 
 def constraints(f: Functions) -> tuple[Program | Routine, ...]:
@@ -295,7 +301,7 @@ def routine(
     arguments: tuple[str, ...],
     results: tuple[Result, ...],
     algorithm: str,
-    statuses: tuple[tuple[int, str], ...],
+    statuses: tuple[Status, ...],
     calls: tuple[str, ...],
 ) -> Routine:
     """A routine; it takes the inputs too where what it calls does."""

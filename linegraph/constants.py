@@ -181,6 +181,6 @@ def mapped(program: Program, of: Callable[[Operand], Operand]) -> Program:
         node, bound = of(check.node), of(check.bound)
         if isinstance(node, Node):
             checks.append(replace(check, node=node, bound=bound))
-        elif isinstance(bound, Node) or not node > bound:
+        elif isinstance(bound, Node) or not node > bound * (check.fraction or 1):
             raise ModelError("", f"{check.about}, whatever the state")
     return replace(program, results=results, checks=tuple(checks))

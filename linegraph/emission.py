@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from linegraph.derive import derive, placed
 from linegraph.errors import ModelError
@@ -39,10 +39,9 @@ def emit(
     functions: Iterable[str] = (),
     only: Iterable[str] = (),
     frames: Iterable[str] = (),
-    trig: str = "libm",
-    batch: bool = False,
     tests: bool = False,
     progress: Callable[[str], None] | None = None,
+    **options: Any,
 ) -> list[Path]:
     """Derive a model and write its functions as source files.
 
@@ -55,10 +54,11 @@ def emit(
         functions: further functions to write, of `programs.ON_REQUEST`.
         only: write nothing but these of `programs.PROGRAMS` and what they call.
         frames: bodies, or frames of bodies as ``body.frame``, whose kinematics are to be written.
-        trig: whose sine and cosine C calls, ``libm`` or ``inline``: those of the file itself.
-        batch: write functions of many states at once in C, too.
         tests: write golden vectors, too: programs that check what is written against another route.
         progress: called with a short text before each stage.
+        **options: choices for C: ``trig`` ("libm" or "inline"), ``batch`` (functions of many states),
+            ``real`` ("double" or "float"), ``prefix`` (of functions, types and macros), ``cmake``,
+            ``arduino`` and ``report``, as `codegen.Options` says them.
 
     Returns:
         The files written. Nothing is written unless everything could be rendered.
@@ -83,10 +83,9 @@ def emit(
         functions=functions,
         only=only,
         frames=frames,
-        trig=trig,
-        batch=batch,
         tests=tests,
         progress=progress,
+        **options,
     )
     return write_all(out, files)
 
@@ -100,10 +99,9 @@ def render(
     functions: Iterable[str] = (),
     only: Iterable[str] = (),
     frames: Iterable[str] = (),
-    trig: str = "libm",
-    batch: bool = False,
     tests: bool = False,
     progress: Callable[[str], None] | None = None,
+    **options: Any,
 ) -> dict[str, str]:
     """What `emit` writes, as {file name: text}."""
     import codegen
@@ -114,19 +112,19 @@ def render(
         if language not in codegen.LANGUAGES:
             known = ", ".join(codegen.LANGUAGES)
             raise ModelError(f'language "{language}"', f"is not known; known: {known}")
-    options = codegen.Options(trig, batch)
+    choices = codegen.options_of(options)
     prefix = codegen.naming.identifier(model.name) if name is None else name
     tell("deriving")
     module = module_for(model, prefix, folded=folded, functions=functions, only=only, frames=frames)
     files: dict[str, str] = {}
     for language in chosen:
         tell(f"writing {language}")
-        files |= codegen.render(module, language, options)
+        files |= codegen.render(module, language, choices)
     if tests:
         tell("computing golden vectors")
         found = _vectors(model, module)
         for language in chosen:
-            files |= codegen.render_tests(module, found, language, options)
+            files |= codegen.render_tests(module, found, language, choices)
     return files
 
 

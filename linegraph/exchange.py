@@ -117,11 +117,11 @@ class Exchange:
         """What the network adds to the mass matrix: row, column, entry; rows and columns may repeat."""
         for (i, j), entry in self.network.mass.items():
             value = self.still(entry)
-            for row, left in self._projected(i):
-                for column, right in self._projected(j):
+            for row, left in self.projected(i):
+                for column, right in self.projected(j):
                     yield row, column, left * right * value
 
-    def _projected(self, place: int) -> tuple[tuple[int, Scalar], ...]:
+    def projected(self, place: int) -> tuple[tuple[int, Scalar], ...]:
         """Where a row or column of the network stands in the whole."""
         count = len(self.network.states)
         if place < count:
@@ -130,7 +130,7 @@ class Exchange:
 
     def coordinate_of(self, port: int) -> tuple[tuple[int, Scalar], ...]:
         """The same of an edge in mechanics."""
-        return self._projected(len(self.network.states) + port)
+        return self.projected(len(self.network.states) + port)
 
     # -- every variable
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from linegraph.base_parameters import BaseParameters
     from linegraph.derive import Derivation
     from linegraph.drawing.scene import Scene
     from linegraph.equation_list import Equations
@@ -214,6 +215,20 @@ class Face:
         from linegraph.dynamic import to_static
 
         return to_static(self.symbolic, expression)
+
+    # -- identification
+
+    def base_parameters(self) -> BaseParameters:
+        """What of masses, moments, friction and rotor inertias motion can tell apart.
+
+        Each is a sum of standard parameters, with factors in closed form of the model's geometry.
+
+        Raises:
+            ModelError: nothing moves, or a relation of coupled or prescribed motions has no closed form.
+        """
+        from linegraph.parameter_search import base_parameters
+
+        return base_parameters(self._derivation)
 
     # -- numbers
 

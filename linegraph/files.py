@@ -15,7 +15,9 @@ if TYPE_CHECKING:
 
 
 def write_all(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]) -> list[Path]:
-    """Write files under their names, replacing what stood there; texts in UTF-8 with LF line ends.
+    """Write files under their names, or paths below the folder, replacing what stood there.
+
+    Texts are written in UTF-8 with LF line ends.
 
     Everything is first written beside its place under another name and moved there last, so that an
     interrupted run leaves no half file under a final name.
@@ -30,6 +32,7 @@ def write_all(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]) 
         for name, content in files.items():
             staged.append((_stage(target, content), target / name))
         for temporary, final in staged:
+            final.parent.mkdir(parents=True, exist_ok=True)
             os.replace(temporary, final)
     except OSError as error:
         for temporary, _ in staged:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from linegraph.algebra import Floats
+from linegraph.algebra import Floats, set_label
 from linegraph.body import GROUND, MASS_CENTER
 from linegraph.errors import ModelError
 from linegraph.jets import Jet, Jets, lifted
@@ -306,6 +306,7 @@ def _motion(
     """A prescribed value with its first two derivatives, from an expression of t or from inputs."""
     if given == BY_INPUT:
         return _from_inputs(layout, algebra, quantity)
+    set_label(algebra, f"motion of {quantity.name}")
     try:
         return lifted(resolver(Jets(algebra), values)(given))
     except ModelError as error:

@@ -13,6 +13,7 @@ from linegraph.program import (
     Quantity,
     Result,
     Routine,
+    Status,
     reads,
 )
 
@@ -20,10 +21,15 @@ if TYPE_CHECKING:
     from linegraph.kinematics import KinematicTree
     from linegraph.shared import Functions
 
-NO_SOLUTION = (900, "the algebraic loop of the network has no solution here, or none was found")
-SINGULAR = (
+NO_SOLUTION = Status(
+    900,
+    "the algebraic loop of the network has no solution here, or none was found",
+    "NO_LOOP_SOLUTION",
+)
+SINGULAR = Status(
     901,
     "the static laws of the network are singular here: a resistance or a ratio is zero",
+    "SINGULAR_NETWORK",
 )
 LOOP_FUNCTION = "algebraic_loop"
 

@@ -228,9 +228,10 @@ def _checks_of_mass(f: Functions, factors: Factors, dynamics: _Dynamics) -> list
         size = f.dag.function("abs", pivot) if stored else pivot
         entry = dynamics.mass[i][i]
         if isinstance(size, Node):
-            bound = 0 if stored or pivot is entry else SINGULAR * entry
+            bound = 0 if stored or pivot is entry else entry
             about = f"the mass matrix is singular at {dynamics.names[i]}"
-            checks.append(Check(size, bound, i + 1, about))
+            name = f"SINGULAR_AT_{dynamics.names[i]}"
+            checks.append(Check(size, bound, i + 1, about, name, None if bound == 0 else SINGULAR))
     return checks
 
 
@@ -240,9 +241,11 @@ def _checks_of_frame(
     checks = []
     for i, pivot in enumerate(known.pivots):
         if isinstance(pivot, Node):
-            bound = 0 if pivot is inner[i][i] else SINGULAR * inner[i][i]
+            bound = 0 if pivot is inner[i][i] else inner[i][i]
             about = f'the frame "{frame.name}" cannot move {DIRECTIONS[i]} by itself here'
-            checks.append(Check(pivot, bound, len(f.v) + i + 1, about))
+            name = f"IMMOBILE_{frame.identifier}_{DIRECTIONS[i].replace(' ', '_')}"
+            fraction = None if bound == 0 else SINGULAR
+            checks.append(Check(pivot, bound, len(f.v) + i + 1, about, name, fraction))
     return checks
 
 

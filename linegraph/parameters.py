@@ -6,6 +6,7 @@ import random
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from linegraph.algebra import set_label
 from linegraph.errors import ModelError
 from linegraph.formula import Formula, parse
 
@@ -118,9 +119,11 @@ def valued(
     values: dict[str, Scalar] = {}
     for parameter in parameters:
         if parameter.derived:
+            set_label(algebra, f"parameter {parameter.name}")
             values[parameter.name] = resolver(algebra, values)(parameter.value)
         else:
             values[parameter.name] = given(parameter)
+    set_label(algebra, "")
     return values
 
 

@@ -7,7 +7,7 @@ a reader should know of them stands in the labels and in the texts of the `Modul
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.expression import NEG, SUB, SYMBOL, Node, Operand
 
@@ -58,12 +58,19 @@ class Result:
 
 @dataclass(frozen=True)
 class Check:
-    """After `node` is known: unless ``node > bound``, stop with `status`, results untouched."""
+    """After `node` is known: unless ``node > bound``, stop with `status`, results untouched.
+
+    Attributes:
+        name: what languages with named constants call the status.
+        fraction: of `bound` is what the node must exceed; it stands for the rounding of doubles.
+    """
 
     node: Node
     bound: Operand
     status: int
     about: str
+    name: str = ""
+    fraction: float | None = None
 
 
 @dataclass(frozen=True)
@@ -111,6 +118,14 @@ class Program:
         return operations_of(self.results, self.checks)
 
 
+class Status(NamedTuple):
+    """What a function returns where it cannot compute: a number, what that means, and its name."""
+
+    number: int
+    about: str
+    name: str
+
+
 @dataclass(frozen=True)
 class Routine:
     """A function that iterates or decides while it runs: its body is an algorithm each language has written.
@@ -128,7 +143,7 @@ class Routine:
     arguments: tuple[Argument, ...]
     results: tuple[Result, ...]
     algorithm: str
-    statuses: tuple[tuple[int, str], ...]
+    statuses: tuple[Status, ...]
     uses: tuple[str, ...]
     details: tuple[tuple[str, Any], ...] = ()
     status: bool = True
@@ -218,7 +233,8 @@ def live_nodes(program: Program) -> list[Node]:
 
 def operations_of(results: tuple[Result, ...], checks: tuple[Check, ...] = ()) -> int:
     """Operations that results and checks take together; a change of sign is free."""
-    return len(_operations(_roots(results, checks)))
+    scaled = sum(x.fraction is not None and isinstance(x.bound, Node) for x in checks)
+    return scaled + len(_operations(_roots(results, checks)))
 
 
 def needed_for(entries: Iterable[Operand]) -> frozenset[int]:

@@ -13,6 +13,7 @@ from linegraph import (
     network_programs,
     operational_programs,
     orthogonality,
+    parameter_programs,
     pivots,
 )
 from linegraph.articulated import forward_dynamics
@@ -67,16 +68,11 @@ def module_of(
             those asked for.
     """
     parameters = parameters_of(derivation)
-    asked = (*only,) or (*(set(PROGRAMS) - set(ON_REQUEST)), *wanted)
-    frames = tuple(frames)
-    if frames and only and not {"kinematics", *OF_FRAMES} & set(asked):
-        problem = f"nothing of it is asked for: {', '.join(OF_FRAMES)} or kinematics would be"
-        raise ModelError(f'frame "{frames[0].name}"', problem)
-    if not only:
-        asked = (*asked, *kinematic_programs.besides(asked, frames))
+    wanted, only, frames = tuple(wanted), tuple(only), tuple(frames)
+    asked = _asked(wanted, only, frames)
     functions = Functions(derivation, folded or not parameters, frames, asked)
     made = _made(functions, [key for key in PROGRAMS if key in asked])
-    for key in (*only, *(key for key in wanted if key in OF_FRAMES)):
+    for key in only or wanted:
         if not made[key]:
             raise ModelError(
                 f'function "{key}"',
@@ -106,13 +102,31 @@ def module_of(
         parameters=() if folded else parameters,
         time=derivation.model.depends_on_time,
         programs=programs,
-        listings=(*whole, *closed, *edge_programs.listings(functions, chosen)),
+        listings=(
+            *whole,
+            *closed,
+            *edge_programs.listings(functions, chosen),
+            *parameter_programs.listings(functions, chosen),
+        ),
         counts=(
             *(closed_programs.counts(functions) if tree.closed else ()),
             *([(COUNT, constants)] if constants else []),
             *derivative_programs.counts(functions, chosen),
         ),
     )
+
+
+def _asked(
+    wanted: tuple[str, ...], only: tuple[str, ...], frames: tuple[NamedFrame, ...]
+) -> tuple[str, ...]:
+    """The keys of `PROGRAMS` that are asked for."""
+    if not only:
+        asked = (*(set(PROGRAMS) - set(ON_REQUEST)), *wanted)
+        return (*asked, *kinematic_programs.besides(asked, frames))
+    if frames and not {"kinematics", *OF_FRAMES} & set(only):
+        problem = f"nothing of it is asked for: {', '.join(OF_FRAMES)} or kinematics would be"
+        raise ModelError(f'frame "{frames[0].name}"', problem)
+    return only
 
 
 def _made(functions: Functions, keys: Iterable[str]) -> dict[str, tuple[Program | Routine, ...]]:
@@ -294,6 +308,8 @@ PROGRAMS: dict[str, Maker] = {
     "kinematics": kinematic_programs.kinematics,
     "operational_space": operational_programs.operational_space,
     "operational_position": operational_programs.operational_position,
+    "regressor": parameter_programs.regressor_program,
+    "inertial_parameters": parameter_programs.values_program,
 }
 """The register of emitted functions, in emitted order: what a user may ask for, and what makes them."""
 
@@ -310,6 +326,8 @@ ON_REQUEST = (
     *OF_FRAMES,
     *kinematic_programs.WHOLE,
     "kinematics",
+    "regressor",
+    "inertial_parameters",
 )
 """Emitted only where they are asked for."""
 

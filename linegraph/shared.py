@@ -87,9 +87,12 @@ class Functions:
             lambda p: p.value if folded else self.dag.symbol("p", p.name),
         )
         self.tree = derivation.tree(self.dag, self.values)
+        self.dag.label = "moments of links, regrouped"
         self.shortened = shortened(self.tree)
+        self.dag.label = "equations of constraints"
         self.short = self.shortened.tree
         self.equations = equations(self.tree)
+        self.dag.label = ""
         self.sizes = {
             "q": len(self.tree.positions),
             "v": len(self.tree.velocities),

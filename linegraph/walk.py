@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from linegraph.algebra import set_label
 from linegraph.body import GROUND, Placement
 from linegraph.errors import ModelError
 from linegraph.joints.base import NO_MOMENTS, TORQUES, Restriction
@@ -78,8 +79,10 @@ class _Walk:
                 self._cross(joint, step)
             elif step.edge.component in self._formulation.absolute and step.near == GROUND:
                 self._float(step.edge.component)
+        set_label(self._algebra, "gravity")
         gravity = resolved(self._model.gravity, self._resolve)
         ends = {end.component.name: end for end in self._ends()}
+        set_label(self._algebra, "")
         return KinematicTree(
             tuple(self._links),
             gravity,
@@ -98,6 +101,7 @@ class _Walk:
         return in_space or name not in self._formulation.joints
 
     def _cross(self, joint: Joint, step: Step) -> None:
+        set_label(self._algebra, f"constants, joint {joint.name}")
         joint = joint.resolved(self._resolve)
         body, placement = self._terminals[step.near]
         parent, pose = self._where[body]
@@ -132,6 +136,7 @@ class _Walk:
         """Every joint and constraint as the chord that it is or would be."""
         drives = self._layout.drives
         for given in self._model.joints:
+            set_label(self._algebra, f"constants, joint {given.name}")
             joint = given.resolved(self._resolve)
             tail, head = (self._seat(end, self._alignment(joint)) for end in joint.between)
             held: tuple[Restriction, ...] = ()
@@ -141,6 +146,7 @@ class _Walk:
                 held = tuple(r for r in found if isinstance(r, TORQUES) or not level)
             yield Closure(joint, tail, head, drives.get(joint.name, ()), held)
         for constraint in self._model.constraints:
+            set_label(self._algebra, f"constants, constraint {constraint.name}")
             tail, head = (self._seat(end, _ALIGNED) for end in constraint.ends)
             yield Closure(constraint, tail, head, drives[constraint.name])
 
@@ -157,6 +163,7 @@ class _Walk:
         if index < 0:
             return
         link = self._links[index]
+        set_label(self._algebra, f"constants, body {body}")
         own = body_moments(self._model.bodies[body], self._resolve, pose)
         moments = joined(link.moments, own)
         name = f"{link.name}, {body}" if link.name else body

@@ -72,7 +72,7 @@ class System:
         c: the emitted C.
     """
 
-    def __init__(self, model: lg.Model, folder: Path, optimize: str = "-O2") -> None:
+    def __init__(self, model: lg.Model, folder: Path, optimize: str = "-O1") -> None:
         """Emit with the parameters folded, and the power audit."""
         self.model = model
         self.derivation = lg.derive(model)
@@ -241,14 +241,14 @@ def accelerating(model: lg.Model) -> lg.Model:
 @functools.cache
 def system(name: str) -> System:
     """An example by name, emitted and compiled once."""
-    optimize = "-O0" if name in BIG else "-O2"
+    optimize = "-O0" if name in BIG else "-O1"
     return System(accelerating(read(name)), folder_for(name), optimize)
 
 
 @functools.cache
 def with_values(name: str, *values: tuple[str, float]) -> System:
     """An example with other values of some parameters."""
-    optimize = "-O0" if name in BIG else "-O2"
+    optimize = "-O0" if name in BIG else "-O1"
     return System(changed(read(name), **dict(values)), folder_for(name), optimize)
 
 

@@ -17,7 +17,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--all-forms",
         action="store_true",
-        help="simplify the closed forms of every random system, not of a few",
+        help="ask every random system, tree and form, not a few of each",
     )
 
 

@@ -128,7 +128,7 @@ class Point:
 
         value = Replay(Floats(), number)
         for check in program.checks:
-            assert value(check.node) > value(check.bound)
+            assert value(check.node) > (check.fraction or 1) * value(check.bound)
         return [np.array(value.all(x.entries), float).reshape(x.shape) for x in program.results]
 
 

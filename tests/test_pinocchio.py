@@ -89,7 +89,7 @@ def test_agrees_with_pinocchio(
     snapped = render(
         readable(file, base, SNAP)[0], name="snapped", folded=True, languages=["python"]
     )
-    compiled = Compiled(files, "robot", tmp_path, flags=("-O1",))
+    compiled = Compiled(files, "robot", tmp_path, flags=("-O0",))
     module, dusted = load(files, "robot", tmp_path), load(snapped, "snapped", tmp_path)
     n = module.NV
     assert list(module.Q_NAMES) == pair.q_names

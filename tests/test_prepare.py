@@ -142,7 +142,7 @@ def test_prepared_functions_give_what_the_reference_gives(kind: str, tmp_path: P
             assert error(found, solved) < SOLVED
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.seeds(range(0, 20, 3), range(20))
 def test_random_trees(seed: int, tmp_path: Path) -> None:
     """Massless bodies and couplings, too, against Newton and Euler."""
     rng = np.random.default_rng([seed, 5])
