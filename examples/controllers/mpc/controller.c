@@ -8,7 +8,7 @@
 #define MOST        8.0  /* N, of the motor */
 #define RAIL        0.5  /* m, from the middle to where the rail is to be kept free */
 #define MOST_SPREAD 6.0  /* N, of what is tried about the plan */
-#define PERSISTENCE 0.7  /* of that from one period to the next */
+#define PERSISTENCE 0.85 /* of that from one period to the next */
 #define TEMPERATURE 3.0  /* how much worse a plan may be than the best and still count */
 
 enum { SLIDE = 0, SWING = 1 };
