@@ -1,66 +1,92 @@
 """Emitted linearisation of a mechanism in its independent coordinates.
 
-A motion that keeps the constraints is known by the independent coordinates s and their rates w, and so are
-its small changes: d = T ds, dv = T dw + S ds, where S keeps the constraints of velocity,
-J S = -∂(J v - b)/∂q T. With these put into the derivative of M a - f - J^T lam = 0, J a = gam,
+A motion that keeps the constraints is known by its independent velocities w and by as many changes s of
+position as the equations of position leave free: those along w, and with constraints of velocity alone
+(wheels, blades) some more. So are its small changes,
+
+    d = D ds        dv = T dw + S ds        J S = -∂(J v - b)/∂q D
+
+where D keeps the equations of position and T and S those of velocity. With these put into the derivative of
+M a - f - J^T lam = 0, J a = gam,
 
     M da - J^T dlam = -∂(M a - f - J^T lam)        J da = -∂(J a - gam)
 
-which is solved as the equations of motion are. So ds' = dw, and dw' are the independent entries of da.
+which is solved as the equations of motion are. ds' are entries of d' = dv - (ad v) d, dw' those of da.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from linegraph import tangent
 from linegraph.closed_programs import (
     CONTRADICTION,
     NO_INERTIA,
     SINGULAR,
+    assembly,
     independent,
     routine,
 )
 from linegraph.errors import ModelError
 from linegraph.program import Program, Result, Routine
-from linegraph.slopes import columns, matrix, of_motion, variables
+from linegraph.slopes import columns, matrix, of_motion, turned, variables
 
 if TYPE_CHECKING:
     from linegraph.shared import Functions
+
+WELL_APART = 1e-4
+"""The least singular value, beside the largest entry, of columns of J that determine something."""
 
 
 def linearize(f: Functions) -> tuple[Program | Routine, ...]:
     """A and B in the independent coordinates.
 
     Raises:
-        ModelError: the mechanism has none, constraints follow inputs, or are of velocity alone.
+        ModelError: the mechanism has none, or constraints follow inputs.
     """
     who = f'model "{f.model.name}"'
-    if f.tree.network is not None or not independent(f):
-        problem = (
-            "it is not reduced to independent coordinates, in which alone loops are linearised"
-        )
-        raise ModelError(who, problem)
-    if not all(equation.holonomic for equation in f.equations):
-        problem = (
-            "some of its constraints are of velocity alone, so that more positions than velocities are "
-            "independent; it is not linearised yet"
-        )
+    free = free_changes(f)
+    if not free:
+        problem = "is not reduced to independent coordinates, in which alone loops are linearised"
         raise ModelError(who, problem)
     if f.driven_constraints:
-        raise ModelError(who, "its constraints follow inputs, by which they cannot be linearised")
-    size, inputs = 2 * len(independent(f)), f.sizes["u"]
+        raise ModelError(who, "has constraints that follow inputs: it cannot be linearised")
+    size, inputs = len(free) + len(independent(f)), f.sizes["u"]
     results = [Result("A", (size, size), (), "derivatives of xdot by x")]
     if inputs:
         results.append(Result("B", (size, inputs), (), "derivatives of xdot by u"))
     about = (
-        "Linearisation in the independent coordinates s and their rates w, at any state that satisfies the "
-        "constraints: small changes follow dx' = A dx + B du with x = (s, w)."
+        "Linearisation in independent coordinates and velocities, at any state that satisfies the "
+        "constraints: small changes follow dx' = A dx + B du with the dx that are listed."
     )
     calls = ("forward_dynamics", "constrained_equations", "constrained_slopes", "reduction")
     given = ("q", "v", "u")
     statuses = (SINGULAR, NO_INERTIA, CONTRADICTION)
     made = routine(f, "linearize", about, given, tuple(results), "linearization", statuses, calls)
-    return (_slopes(f), made)
+    return (_slopes(f), replace(made, details=(*made.details, ("d_at", tuple(free)))))
+
+
+def free_changes(f: Functions) -> list[int]:
+    """The changes of position that the others follow from: those along w, then others as they are needed."""
+    if f.tree.network is not None or not independent(f):
+        return []
+    import numpy
+
+    own = [v for _, v in independent(f)]
+    others = [k for k in range(f.tree.layout.mechanical) if k not in own]
+    count = sum(equation.holonomic for equation in f.equations)
+    rows = f.derivation.numeric().constraint_jacobian(assembly(f).q)[:count]
+    J = numpy.array(rows, float).reshape(count, len(f.v))
+    scale = numpy.abs(J).max(initial=1e-300)
+    dependent: list[int] = []
+    for k in [*reversed(others), *reversed(own)]:
+        if len(dependent) == assembly(f).position_rank:
+            return sorted({*own, *others} - {*dependent})
+        found = numpy.linalg.svd(J[:, [*dependent, k]] / scale, compute_uv=False)
+        if found.min() > WELL_APART and len(found) == len(dependent) + 1:
+            dependent.append(k)
+    return []
 
 
 def _slopes(f: Functions) -> Program:
@@ -75,10 +101,12 @@ def _slopes(f: Functions) -> Program:
     ]
     changes, velocities, inputs = variables(f)
     by = [*changes, *velocities, *inputs]
+    drift = [[-x for x in column] for column in turned(tangent.adjoint(f.tree, f.v))]
     results = (
         matrix("slopes_f", of_motion(f, f.carried, less, by), "of M a - f - J^T lam"),
         matrix("slopes_gam", columns(f, motion, by), "of J a - gam"),
         matrix("slopes_rates", columns(f, f.chords.rates(f.v), changes), "of J v - b"),
+        matrix("drift", drift, "of the rates of d by d, -(ad v)"),
     )
     about = (
         "Derivatives of what is zero at the accelerations a and multipliers lam: by changes d of q along the "

@@ -17,6 +17,7 @@ from linegraph.closed_programs import independent
 from linegraph.differentiation import substitution
 from linegraph.errors import ModelError
 from linegraph.factorization import factored, solve_many
+from linegraph.program import Listing, Quantity
 from linegraph.slopes import Columns, matrix, of_motion, turned, variables
 
 if TYPE_CHECKING:
@@ -116,14 +117,35 @@ def forward_dynamics_by_parameters(f: Functions) -> tuple[Program | Routine, ...
 
 
 def counts(f: Functions, chosen: Iterable[str]) -> tuple[tuple[str, int], ...]:
-    """How many changes of q there are, and of the state that `linearize` speaks of."""
+    """How many changes of q there are."""
     if not {"linearize", "inverse_dynamics_derivatives", "forward_dynamics_derivatives"} & {
         *chosen
     }:
         return ()
     count = len(tangent.changes(f.tree))
-    whole = 2 * len(independent(f)) if f.tree.closed else count + len(f.v)
-    return (("NT", count), ("NDX", whole))
+    return (("NT", count),)
+
+
+def listings(f: Functions, chosen: Iterable[str]) -> tuple[Listing, ...]:
+    """The entries of dx: changes d of position, then of velocities, under the names that these have."""
+    if "linearize" not in chosen:
+        return ()
+    moved, rates = list(range(len(tangent.changes(f.tree)))), list(range(len(f.v)))
+    if f.tree.closed:
+        moved = closed_derivatives.free_changes(f)
+        rates = [v for _, v in independent(f)]
+    names = network_programs.state_listing(f.tree).quantities[len(f.q) :]
+    positions = {quantity.name: quantity for quantity in f.tree.positions}
+    found = []
+    for k in moved:
+        velocity = f.tree.velocities[k]
+        plain = positions.get(velocity.name)
+        about = f"change along {velocity.name}"
+        unit = velocity.unit.removesuffix("/s")
+        found.append(plain or Quantity(f"d_{velocity.name}", unit, about))
+    quantities = (*found, *(names[k] for k in rates))
+    heading = "changes that linearize speaks of"
+    return (Listing("dx", "NDX", heading, quantities),)
 
 
 _STATE = ("q", "v", "u")

@@ -107,6 +107,7 @@ def module_of(
             *closed,
             *edge_programs.listings(functions, chosen),
             *parameter_programs.listings(functions, chosen),
+            *derivative_programs.listings(functions, chosen),
         ),
         counts=(
             *(closed_programs.counts(functions) if tree.closed else ()),

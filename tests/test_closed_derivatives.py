@@ -15,9 +15,12 @@ import pytest
 from compiled import Compiled
 from emitted import load
 from scipy.linalg import qr
-from test_derivatives import STEP, Point, error
+from test_closed_examples import BICYCLE_AT_REST, CAPSIZE, WEAVE
+from test_derivatives import STEP, Point, above, error
 
+import linegraph as lg
 from linegraph import ModelError, derive
+from linegraph.closed_derivatives import free_changes
 from linegraph.closed_programs import independent
 from linegraph.emission import render
 from linegraph.shared import Functions
@@ -34,6 +37,8 @@ NAMES = (
     "parallelograms",
     "bricard",
     "stewart_platform",
+    "rolling_disc",
+    "bicycle",
 )
 EXACT = 1e-11
 """Relative to 1 + the largest entry; the constraints are eliminated in another order."""
@@ -45,27 +50,25 @@ def independent_rows(J: Array) -> Array:
     return np.sort(order[: int(np.sum(size > 1e-9 * size[0]))])
 
 
-def reduced(point: Point, at: list[tuple[int, int]]) -> Array:
-    """(A B) in the independent coordinates at places `at` of v."""
-    own = [v for _, v in at]
+def reduced(point: Point, free: list[int], own: list[int], holonomic: int) -> Array:
+    """(A B) for changes of position at places `free` and velocities at places `own`."""
     still = point.still
     J = np.real(still.stacked(still.chords.jacobian())[0])
-    rows, n, k = independent_rows(J), len(point.v), len(own)
-    free = np.vstack((J[rows], np.eye(n)[own]))
-    T = np.linalg.solve(free, np.vstack((np.zeros((len(rows), k)), np.eye(k))))
-    lanes = 2 * k + len(point.u)
+    rows, n, m, k = independent_rows(J), len(point.v), len(free), len(own)
+    keeping = independent_rows(J[:holonomic]) if holonomic else np.array([], dtype=int)
+    square = np.vstack((J[keeping], np.eye(n)[free]))
+    D = np.linalg.solve(square, np.vstack((np.zeros((len(keeping), m)), np.eye(m))))
+    lanes = m + k + len(point.u)
     shift = np.zeros((lanes, len(point.q) + n + len(point.u)), complex)
-    shift[:k, : len(point.q)] = (point.columns @ T).T
-    shift[2 * k :, len(point.q) + n :] = np.eye(len(point.u))
+    shift[:m, : len(point.q)] = (point.columns @ D[: point.mechanical]).T
+    shift[m + k :, len(point.q) + n :] = np.eye(len(point.u))
     moved = point.at(1j * STEP * shift)
     there = moved.stacked(moved.chords.jacobian())[:, rows]
     velocity = np.tile(point.v[own].astype(complex), (lanes, 1))
-    velocity[k : 2 * k] += 1j * STEP * np.eye(k)
+    velocity[m : m + k] += 1j * STEP * np.eye(k)
     # J v - b at the moved position and the old v gives b
-    fixed = (
-        np.einsum("sij,j->si", there, point.v)
-        - moved.stacked(moved.chords.rates(moved.state[1]))[:, rows]
-    )
+    amiss = moved.stacked(moved.chords.rates(moved.state[1]))[:, rows]
+    fixed = np.einsum("sij,j->si", there, point.v) - amiss
     whole = np.concatenate((there, np.tile(np.eye(n)[own], (lanes, 1, 1))), axis=1)
     v = np.linalg.solve(whole, np.concatenate((fixed, velocity), axis=1)[..., None])[..., 0]
     shift = 1j * STEP * shift
@@ -80,9 +83,10 @@ def reduced(point: Point, at: list[tuple[int, int]]) -> Array:
     kkt[:, :n, n:] = -np.swapaxes(there, 1, 2)
     right = np.concatenate((moved.forces - moved.bias, bias[:, rows]), axis=1)
     a = np.linalg.solve(kkt, right[..., None])[:, :n, 0]
-    below = np.imag(a[:, own]).T / STEP
-    above = np.hstack((np.zeros((k, k)), np.eye(k), np.zeros((k, len(point.u)))))
-    return np.vstack((above, below))
+    d = np.zeros((point.mechanical, lanes))
+    d[:, :m] = D
+    going = np.imag(v).T / STEP + above(point)[:, : point.mechanical] @ d
+    return np.vstack((going[free], np.imag(a[:, own]).T / STEP))
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -91,17 +95,19 @@ def test_mechanisms(name: str, tmp_path: Path) -> None:
     derivation = derive(model)
     files = render(model, folded=True, only=("linearize", "project"))
     emitted, compiled = load(files, model.name, tmp_path), Compiled(files, model.name, tmp_path)
-    at = independent(Functions(derivation, folded=True))
+    f = Functions(derivation, folded=True)
+    free, own = free_changes(f), [v for _, v in independent(f)]
+    holonomic = sum(equation.holonomic for equation in f.equations)
     rng = np.random.default_rng(3)
     start = np.array(derivation.assembled.q)
     for _ in range(3):
-        q, v = emitted.project(
-            start + rng.uniform(-0.05, 0.05, len(start)), rng.normal(size=emitted.NV)
-        )
+        near = start + rng.uniform(-0.05, 0.05, len(start))
+        q, v = emitted.project(near, rng.normal(size=emitted.NV))
         u = rng.normal(size=emitted.NU)
         found = emitted.linearize(q, v, u)
         A, *B = found if emitted.NU else (found,)
-        expected = reduced(Point(derivation, 0.0, q, v, u), at)
+        assert len(A) == emitted.NDX == len(emitted.DX_NAMES)
+        expected = reduced(Point(derivation, 0.0, q, v, u), free, own, holonomic)
         assert error(np.hstack((A, *B)), expected) <= EXACT
         shapes = [x.shape for x in (A, *B)]
         in_c = compiled.call("linearize", q, v, u, out=shapes)
@@ -109,7 +115,40 @@ def test_mechanisms(name: str, tmp_path: Path) -> None:
             assert error(ours, theirs) <= EXACT
 
 
-def test_without_independent_coordinates_it_is_refused() -> None:
-    model = closed_examples.read("rolling_disc")
-    with pytest.raises(ModelError, match="constraints are of velocity alone"):
+def test_the_bicycle_is_that_of_the_benchmark(tmp_path: Path) -> None:
+    """Riding straight, lean and steer by themselves: eigenvalues at rest, and where weave becomes stable."""
+    files = render(
+        closed_examples.read("bicycle"),
+        folded=True,
+        only=("linearize", "reduction"),
+        languages=["python"],
+    )
+    emitted = load(files, "bicycle", tmp_path)
+    start = np.array(derive(closed_examples.read("bicycle")).assembled.q)
+    names = ("frame_lean", "steer", "frame_lean_dot", "steer_dot")
+    at = [emitted.DX_NAMES.index(name) for name in names]
+    u = np.zeros(emitted.NU)
+
+    def riding(speed: float) -> Array:
+        q, v = emitted.complete(start, [0.0, 0.0, 0.0], [0.0, 0.0, -speed / 0.3])
+        A, _ = emitted.linearize(q, v, u)
+        others = [k for k in range(emitted.NDX) if k not in at]
+        assert np.max(np.abs(A[np.ix_(at, others)])) < 1e-11
+        return A[np.ix_(at, at)]
+
+    assert np.allclose(np.sort(np.linalg.eigvals(riding(0.0)).real), BICYCLE_AT_REST, rtol=1e-10)
+    weave = np.linalg.eigvals(riding(WEAVE))
+    assert abs(weave[np.abs(weave.imag) > 1e-3].real.max()) < 1e-9
+    capsize = np.linalg.eigvals(riding(CAPSIZE))
+    assert np.min(np.abs(capsize)) < 1e-9
+
+
+def test_constraints_that_follow_inputs_are_refused() -> None:
+    model = lg.Model("led")
+    arm = model.body("arm", mass=1.0, mass_center=(0, 0, -0.5), inertia=(0.1, 0.1, 0.1))
+    model.revolute("hinge", between=("ground", arm), axis=(0, 1, 0))
+    bob = model.body("bob", mass=1.0, inertia=(0.1, 0.1, 0.1))
+    model.planar("plane", between=(arm, bob), axis=(0, 1, 0))
+    model.driver("lead", between=("ground", bob), x="input")
+    with pytest.raises(ModelError, match="constraints that follow inputs"):
         render(model, only=("linearize",))
