@@ -153,11 +153,22 @@ def compare(made: Module, program: Program, library: Compiled, python: Any, exac
             np.testing.assert_allclose(a, b, rtol=1e-13, atol=1e-12, err_msg=program.name)
 
 
+def in_parts(request: pytest.FixtureRequest, name: str, size: int) -> None:
+    """Hundreds of parts of the large robot are left to ``--all-forms``: small models have parts, too."""
+    if name == "anymal" and size == 5 and not request.config.getoption("--all-forms"):
+        pytest.skip("large: other sizes do")
+
+
 @pytest.mark.parametrize("size", [5, 60, 1000])
 @pytest.mark.parametrize("name", ["arm", "swing", "rough", "panda", "anymal"])
 def test_order_and_parts_do_not_change_a_bit(
-    name: str, size: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    name: str,
+    size: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    request: pytest.FixtureRequest,
 ) -> None:
+    in_parts(request, name, size)
     monkeypatch.setattr(parts, "SIZE", size)
     made = module(name, tmp_path)
     files = codegen.render(made, "c")
@@ -174,8 +185,13 @@ def test_order_and_parts_do_not_change_a_bit(
 @pytest.mark.parametrize("size", [5, 1000])
 @pytest.mark.parametrize("name", ["arm", "swing", "rough", "anymal"])
 def test_own_sines_are_those_of_the_library(
-    name: str, size: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    name: str,
+    size: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    request: pytest.FixtureRequest,
 ) -> None:
+    in_parts(request, name, size)
     monkeypatch.setattr(parts, "SIZE", size)
     made = module(name, tmp_path)
     files = codegen.render(made, "c", WAYS["inline"])
@@ -272,7 +288,8 @@ def test_many_states_are_as_one_by_one(
     made = Module(**{**vars(made), "programs": keep})
     flags = [f"-D{name.upper()}_LANES={x}" for x in lanes] or ["-march=native"]
     files = codegen.render(made, "c", WAYS["both"])
-    library = Compiled(files, name, tmp_path, flags=("-O2", "-ffp-contract=off", *flags))
+    optimize = "-O1" if name == "anymal" else "-O2"
+    library = Compiled(files, name, tmp_path, flags=(optimize, "-ffp-contract=off", *flags))
     done = 0
     for program in straight(made):
         if f"{name}_{program.name}_batch(" not in files[f"{name}.h"]:
@@ -309,7 +326,7 @@ def test_compiles_without_a_warning(name: str, compiler: str, tmp_path: Path) ->
     if not available(compiler):
         pytest.skip(f"{compiler} is not installed")
     made = module(name, tmp_path)
-    for way in ("inline", "batch", "both"):
+    for way in ("both",) if name == "panda" else ("inline", "batch", "both"):
         files = codegen.render(made, "c", WAYS[way])
         for flags in (("-O1",), ("-O2", "-march=native"), (f"-D{name.upper()}_LANES=1",)):
             if name == "arm":  # vector registers are chosen behind the syntax
