@@ -181,7 +181,7 @@ def test_statuses_are_those_of_the_header() -> None:
     header = render(modelfile.read(EXAMPLE), languages=["c"])["four_bar.h"]
     stated = {}
     for comment, name in re.findall(r"/\*\*((?:(?!\*/).)*)\*/\s*int four_bar_(\w+)", header, re.S):
-        stated[name] = set(re.findall(r"\b([123]): ", comment))
+        stated[name] = set(re.findall(r"\(([123])\): ", comment))
     prepared = {name for name in stated if name.endswith("_prepared")}
     for name in prepared:
         assert stated.pop(name) == stated[name.removesuffix("_prepared")], name
