@@ -148,7 +148,7 @@ def test_constraints_that_follow_inputs_are_refused() -> None:
     arm = model.body("arm", mass=1.0, mass_center=(0, 0, -0.5), inertia=(0.1, 0.1, 0.1))
     model.revolute("hinge", between=("ground", arm), axis=(0, 1, 0))
     bob = model.body("bob", mass=1.0, inertia=(0.1, 0.1, 0.1))
-    model.prismatic("slide", between=(arm, bob), axis=(0, 0, 1))
+    model.prismatic("slide", between=(arm, bob), axis=(0, 0, 1), start=0.5)
     model.driver("lead", between=("ground", bob), x="input")
     with pytest.raises(ModelError, match="constraints that follow inputs"):
         render(model, only=("linearize",))

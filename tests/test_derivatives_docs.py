@@ -37,6 +37,20 @@ def test_the_command_writes_what_it_says(tmp_path: Path) -> None:
     assert "furuta_inverse_dynamics_derivatives(" in header
 
 
+def test_the_command_of_the_readme_writes_code_that_holds(tmp_path: Path) -> None:
+    text = (ROOT / "README.md").read_text()
+    (command,) = re.findall(r"^    \.venv/bin/linegraph (emit .* --real float .*)$", text, re.MULTILINE)
+    words = command.replace("examples/", f"{ROOT}/examples/").split()
+    words[-1] = str(tmp_path)
+    done = CliRunner().invoke(main, words)
+    assert done.exit_code == 0, done.output
+    build = ["gcc", "-std=c99", "panda_test.c", "panda.c", "-lm", "-o", "check"]
+    subprocess.run(build, cwd=tmp_path, check=True)
+    done = subprocess.run([tmp_path / "check"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+    assert "linearize" in done.stdout
+
+
 def test_all_functions_and_counts_are_there() -> None:
     for name in ON_REQUEST:
         if "derivatives" in name or name == "linearize":
