@@ -21,7 +21,7 @@ from linegraph.golden.steps import STEP, Complexes, stepped
 from linegraph.golden.walk import Walk, coordinate_rates
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from linegraph.golden.point import Point
     from linegraph.golden.walk import Valued
@@ -68,18 +68,16 @@ class Derivatives:
         dq: Sequence[float] = (),
         dv: Sequence[float] = (),
         du: Sequence[float] = (),
-        **parameters: complex,
+        parameters: Mapping[str, complex] | None = None,
     ) -> Walk:
         """How everything moves a little further along a direction."""
         point = self.point
         q, v = _moved(point.q, dq), _moved(point.v, dv)
         u = _moved(point.u, du) if len(du) else None
-        numeric = stepped(point.walk.numeric, q, v, u=u, parameters=parameters or None)
+        numeric = stepped(point.walk.numeric, q, v, u=u, parameters=parameters)
         return Walk(numeric, q, v)
 
-    def _slopes(
-        self, walks: Sequence[Walk], *, mass: bool = True, bias: bool = True
-    ) -> _Slopes:
+    def _slopes(self, walks: Sequence[Walk], *, mass: bool = True, bias: bool = True) -> _Slopes:
         """All by as many variables as there are walks; M and h may be known not to depend on them."""
         np, n, k = self.point.walk.np, len(self.point.v), len(walks)
         found = _Slopes(np.zeros((n, n, k)), np.zeros((n, k)), np.zeros((n, k)))
@@ -117,7 +115,7 @@ class Derivatives:
         values = self.point.walk.numeric.parameters
         names = [p.name for p in self.point.derivation.model.parameters.values() if not p.derived]
         steps = [{name: complex(values[name], STEP)} for name in names]
-        return self._slopes([self._beside(**step) for step in steps])
+        return self._slopes([self._beside(parameters=step) for step in steps])
 
     # -- of tau
 
@@ -142,7 +140,7 @@ class Derivatives:
         """∂τ/∂p."""
         return self._of_tau(self._by_parameters)
 
-    def _sizes(self, found: Array, sizes: Array, units: Any = 1.0) -> Array:
+    def _sizes(self, found: Array, sizes: Array) -> Array:
         """What entries are made of: of each variable what it does most, each row in its own measure.
 
         What does nothing may be what is left of much that does: at least a fraction of what mechanics
@@ -152,7 +150,7 @@ class Derivatives:
         measure = np.where(sizes > 0, sizes, np.inf)[:, None]
         most = (np.abs(found) / measure).max(axis=0, initial=0.0)
         alike = most[: self._count].max(initial=0.0) if len(most) == self._count else 0.0
-        most = np.maximum(most, IDLE * np.maximum(alike, units))
+        most = np.maximum(most, IDLE * max(alike, 1.0))
         return np.maximum(np.abs(found), sizes[:, None] * most)
 
     # -- of v̇
@@ -254,7 +252,9 @@ class Derivatives:
 
     def _determined(self, J: Array, right: Array) -> Array:
         """What the constraints make of a right-hand side: ``J_others x = right``."""
-        return self.point.walk.np.linalg.solve(self._basis @ J[:, self._others], self._basis @ right)
+        return self.point.walk.np.linalg.solve(
+            self._basis @ J[:, self._others], self._basis @ right
+        )
 
     def _accelerations(self, walk: Walk) -> Array:
         """ẇ at a state beside this one, whose velocities are brought onto the constraints from w."""
@@ -263,7 +263,7 @@ class Derivatives:
         J, rates = start.jacobian[0], start.rates[0]
         v = np.array(walk.v, complex)
         v[self._others] -= self._determined(J, rates)
-        walk = Walk(walk.numeric, walk.q, [complex(x) for x in v])
+        walk = Walk(walk.numeric, walk.q, list(map(walk.number, v)))
         bodies, closed = Bodies(walk), Constraints(walk)
         T, rest = np.zeros((len(v), len(kept)), complex), np.zeros(len(v), complex)
         T[kept, range(len(kept))] = 1.0
@@ -299,7 +299,7 @@ class Derivatives:
         return np.vstack([above, below]), np.vstack([above, of_below])
 
 
-def _moved(x: Sequence[float], along: Sequence[float]) -> list[complex]:
+def _moved(x: Sequence[float], along: Sequence[float]) -> list[Any]:
     """A step of some numbers along a direction; none where there is no direction."""
     if not len(along):
         return [complex(a) for a in x]

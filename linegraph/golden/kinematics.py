@@ -118,7 +118,9 @@ class Kinematics:
             arm = body.moved.origin - center
             arms = np.broadcast_to(arm[:, None], force.shape)
             found = found + np.vstack([force, torque + np.cross(arms, force, axis=0)])
-            pull, reach = np.linalg.norm(force, axis=0), np.linalg.norm(arm)
+            # about the mass centre what forces do about ground's origin may cancel
+            pull = np.linalg.norm(force, axis=0)
+            reach = np.linalg.norm(arm) + np.linalg.norm(center)
             size = size + np.vstack([pull, np.linalg.norm(torque, axis=0) + reach * pull])
         return found, np.repeat(size, 3, axis=0)
 

@@ -265,7 +265,9 @@ def _of_frame(frame: NamedFrame) -> dict[str, Reference]:
         ),
         f"{name}_velocity": Reference(PLACES, {"velocity": place("velocity")}),
         f"{name}_jacobian": Reference(PLACES, {"J": place("jacobian")}),
-        f"{name}_jacobian_dot_v": Reference(f"{PLACES}, twice", {"Jdot_v": place("jacobian_dot_v")}),
+        f"{name}_jacobian_dot_v": Reference(
+            f"{PLACES}, twice", {"Jdot_v": place("jacobian_dot_v")}
+        ),
         f"{name}_operational_space": moved(6),
         f"{name}_operational_position": moved(3),
     }

@@ -15,8 +15,7 @@ from linegraph.assembly import consistent
 from linegraph.errors import ModelError
 from linegraph.golden.point import Point
 from linegraph.golden.references import Reference, references
-from linegraph.program import Routine
-from linegraph.prologue import PREPARED_SUFFIX
+from linegraph.program import PREPARED_SUFFIX, Routine
 from linegraph.vectors import Expected, Values, Vectors
 
 if TYPE_CHECKING:
@@ -62,7 +61,9 @@ UNTESTED = {
 NO_ROUTE = "there is no independent route to what it returns"
 EMPTY = "it returns nothing here"
 HANDED = "called by the function of its name without the ending"
-TWIN = "the function of its name without the ending, which is compared, from the constants of prepare"
+TWIN = (
+    "the function of its name without the ending, which is compared, from the constants of prepare"
+)
 
 
 def vectors(

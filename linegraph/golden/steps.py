@@ -102,17 +102,18 @@ _OWN: dict[str, Callable[..., complex]] = {
 
 def stepped(
     numeric: Numeric,
-    q: Sequence[complex],
-    v: Sequence[complex],
+    q: Sequence[Scalar],
+    v: Sequence[Scalar],
     *,
-    u: Sequence[complex] | None = None,
-    parameters: Mapping[str, complex] | None = None,
+    u: Sequence[Scalar] | None = None,
+    parameters: Mapping[str, Scalar] | None = None,
 ) -> Numeric:
     """The numeric reference for a state beside the real one, for inputs and parameters beside theirs.
 
     Args:
         numeric: the model in floats.
-        q, v: the state.
+        q: coordinates.
+        v: velocities.
         u: inputs; those of `numeric` if left out.
         parameters: values in place of those of `numeric`; what is derived from them is so again.
     """
@@ -129,12 +130,12 @@ def stepped(
     found = replace(numeric, tree=tree, algebra=algebra, parameters=values)
     if tree.network is None or not tree.network.loop:
         return found
-    loop = _loop(numeric, found, q, v)
-    return replace(found, algebra=Complexes(**algebra.arguments, loop=loop))
+    algebra = Complexes(**algebra.arguments, loop=_loop(numeric, found, q, v))
+    return replace(found, algebra=algebra)
 
 
 def _loop(
-    numeric: Numeric, beside: Numeric, q: Sequence[complex], v: Sequence[complex]
+    numeric: Numeric, beside: Numeric, q: Sequence[Scalar], v: Sequence[Scalar]
 ) -> list[complex]:
     """The unknowns of an algebraic loop beside those of the real state: one step of Newton's."""
     import numpy as np

@@ -207,9 +207,7 @@ class Walk:
         omega = np.einsum("ijd,kj->ikd", turning, turn)
         last = turning[:, :, -1]
         alpha = bending[:, :, -1] @ turn.T + last @ last.T
-        return Moved(
-            turn, origin[:, 0], self._axial(omega), going, self._axial(alpha), pull[:, -1]
-        )
+        return Moved(turn, origin[:, 0], self._axial(omega), going, self._axial(alpha), pull[:, -1])
 
     @cached_property
     def _places(self) -> list[tuple[list[Array], list[Array]]]:
