@@ -13,7 +13,7 @@ from linegraph.version import __version__
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Sequence
     from pathlib import Path
 
     from linegraph.model import Model
@@ -108,6 +108,7 @@ def render(
 
     tell = progress or (lambda text: None)
     chosen = list(dict.fromkeys(languages or codegen.LANGUAGES))
+    frames = tuple(frames)
     for language in chosen:
         if language not in codegen.LANGUAGES:
             known = ", ".join(codegen.LANGUAGES)
@@ -122,18 +123,18 @@ def render(
         files |= codegen.render(module, language, choices)
     if tests:
         tell("computing golden vectors")
-        found = _vectors(model, module)
+        found = _vectors(model, module, _named(model, frames))
         for language in chosen:
             files |= codegen.render_tests(module, found, language, choices)
     return files
 
 
-def _vectors(model: Model, module: Module) -> Vectors:
+def _vectors(model: Model, module: Module, frames: Sequence[NamedFrame]) -> Vectors:
     """Golden vectors of a module."""
     from linegraph import golden
 
     try:
-        return golden.vectors(derive(model), module)
+        return golden.vectors(derive(model), module, frames=frames)
     except ModelError as error:
         raise placed(error, model) from None
 

@@ -39,7 +39,9 @@ def test_the_command_writes_what_it_says(tmp_path: Path) -> None:
 
 def test_the_command_of_the_readme_writes_code_that_holds(tmp_path: Path) -> None:
     text = (ROOT / "README.md").read_text()
-    (command,) = re.findall(r"^    \.venv/bin/linegraph (emit .* --real float .*)$", text, re.MULTILINE)
+    (command,) = re.findall(
+        r"^    \.venv/bin/linegraph (emit .* --real float .*)$", text, re.MULTILINE
+    )
     words = command.replace("examples/", f"{ROOT}/examples/").split()
     words[-1] = str(tmp_path)
     done = CliRunner().invoke(main, words)

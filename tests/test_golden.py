@@ -27,7 +27,6 @@ from linegraph.cli import main
 from linegraph.emission import module_for, render
 from linegraph.errors import ModelError
 from linegraph.golden.bodies import Bodies
-from linegraph.golden.references import REFERENCES
 from linegraph.golden.walk import Walk
 
 if TYPE_CHECKING:
@@ -262,10 +261,6 @@ def test_states_are_legal(name: str) -> None:
             assert np.abs(numeric.constraint_rates(q, v)).max() < 1e-11
     assert not any(vectors.given["v"][0])
     assert len(set(vectors.given["v"])) == vectors.states == 10
-
-
-def test_every_line_of_the_register_is_used() -> None:
-    assert {x.function for x in found("rolling_disc").expected} == set(REFERENCES)
 
 
 def test_what_is_not_compared_is_listed() -> None:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.loads import efforts
 from linegraph.united import network_entries
-from linegraph.vector import ZERO, add, times
+from linegraph.vector import ZERO, add, is_zero, times
 
 if TYPE_CHECKING:
     from linegraph.golden.walk import Moved, Valued, Walk
@@ -27,7 +27,7 @@ NOISE = 1e-3
 """What an entry of mechanics is made of is at least this fraction of its largest neighbour's: rounding."""
 
 
-class _Heavy(NamedTuple):
+class Heavy(NamedTuple):
     """A body: mass, first moment and inertia about a point, in ground axes, and how that point moves."""
 
     mass: float
@@ -47,9 +47,9 @@ class Bodies:
     walk: Walk
 
     @cached_property
-    def _bodies(self) -> list[_Heavy]:
+    def heavy(self) -> list[Heavy]:
         """Every body that moves, about its mass centre or, where none is given, its origin."""
-        np, resolve = self.walk.np, self.walk.numeric.resolve
+        np, number, resolve = self.walk.np, self.walk.number, self.walk.numeric.resolve
         model = self.walk.numeric.model
         assert model is not None
         found = []
@@ -58,59 +58,63 @@ class Bodies:
             if link < 0:
                 continue
             about: Any = body.center or ZERO
-            about = tuple(float(resolve(x)) for x in about)
-            first = tuple(float(resolve(x)) for x in body.first or ZERO)
-            xx, xy, xz, yy, yz, zz = (float(resolve(x)) for x in body.inertia)
+            about = tuple(number(resolve(x)) for x in about)
+            first = tuple(number(resolve(x)) for x in body.first or ZERO)
+            xx, xy, xz, yy, yz, zz = (number(resolve(x)) for x in body.inertia)
             moved = self.walk.moved(link, add(pose.at, times(pose.rotation, about)), pose.rotation)
             turn = moved.rotation
             inertia = turn @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ turn.T
-            found.append(_Heavy(float(resolve(body.mass)), turn @ first, inertia, moved))
+            found.append(Heavy(number(resolve(body.mass)), turn @ first, inertia, moved))
         return found
 
     @cached_property
     def _gravity(self) -> Array:
-        return self.walk.np.array([float(x) for x in self.walk.tree.gravity])
+        return self.walk.np.array([self.walk.number(x) for x in self.walk.tree.gravity])
 
     @cached_property
     def mass_matrix(self) -> Valued:
         """M, with what networks store; networks by their laws in numbers."""
         np, n = self.walk.np, len(self.walk.v)
-        total, diagonal = np.zeros((n, n)), np.zeros(n)
-        for body in self._bodies:
+        total, diagonal = np.zeros((n, n), self.walk.number), np.zeros(n)
+        for body in self.heavy:
             linear, angular = body.moved.linear[:, :-1], body.moved.angular[:, :-1]
-            force, torque = self._needed(body, linear, angular)
+            force, torque = self.needed(body, linear, angular)
             total += linear.T @ force + angular.T @ torque
             # a slender body has none about its axis, but for the rounding of the rest
-            diagonal += np.linalg.norm(body.inertia) * np.square(angular).sum(axis=0)
-            diagonal += body.mass * np.square(linear).sum(axis=0)
+            diagonal += np.linalg.norm(body.inertia) * np.square(np.abs(angular)).sum(axis=0)
+            diagonal += abs(body.mass) * np.square(np.abs(linear)).sum(axis=0)
         for i, j, entry in network_entries(
             self.walk.numeric.exchange(self.walk.q, self.walk.v), self.walk.numeric.algebra
         ):
-            total[i, j] += float(entry)
+            total[i, j] += self.walk.number(entry)
         diagonal = np.sqrt(np.maximum(diagonal, np.abs(np.diag(total))))
         return total, np.maximum(np.abs(total), np.outer(diagonal, diagonal))
 
-    def _needed(self, body: _Heavy, linear: Array, angular: Array) -> tuple[Array, Array]:
+    def needed(self, body: Heavy, linear: Array, angular: Array) -> tuple[Array, Array]:
         """The force and torque for accelerations of a body at rest, by direction."""
         cross = self.walk.np.cross
         arms = self.walk.np.broadcast_to(body.first[:, None], linear.shape)
         force = body.mass * linear + cross(angular, arms, axis=0)
         return force, body.inertia @ angular + cross(arms, linear, axis=0)
 
+    def required(self, body: Heavy, pull: Array) -> tuple[Array, Array]:
+        """The force and torque, about its point, for a body to move as it does at v̇ = 0."""
+        cross, w = self.walk.np.cross, body.moved.angular[:, -1]
+        force, torque = self.needed(body, pull[:, None], body.moved.spin[:, None])
+        force = force[:, 0] + cross(w, cross(w, body.first))
+        return force, torque[:, 0] + cross(w, body.inertia @ w)
+
     @cached_property
     def bias(self) -> Valued:
         """h: what the bodies need at v̇ = 0, less what acts without inputs."""
         np, n = self.walk.np, len(self.walk.v)
-        total, size = np.zeros(n), np.zeros(n)
-        for body in self._bodies:
+        total, size = np.zeros(n, self.walk.number), np.zeros(n)
+        for body in self.heavy:
             moved, w = body.moved, body.moved.angular[:, -1]
             turned = body.inertia @ w
-            pull = moved.pull - self._gravity
-            force, torque = self._needed(body, pull[:, None], moved.spin[:, None])
-            force = force[:, 0] + np.cross(w, np.cross(w, body.first))
-            torque = torque[:, 0] + np.cross(w, turned)
+            force, torque = self.required(body, moved.pull - self._gravity)
             total += moved.linear[:, :-1].T @ force + moved.angular[:, :-1].T @ torque
-            weight = body.mass * np.linalg.norm(self._gravity) + np.linalg.norm(force)
+            weight = abs(body.mass) * np.linalg.norm(self._gravity) + np.linalg.norm(force)
             spin = np.linalg.norm(torque) + np.linalg.norm(w) * np.linalg.norm(turned)
             size += np.linalg.norm(moved.linear[:, :-1], axis=0) * weight
             size += np.linalg.norm(moved.angular[:, :-1], axis=0) * spin
@@ -124,15 +128,17 @@ class Bodies:
 
     def _along(self, acting: Applied | None) -> Valued:
         """What forces on links and along joints do along v."""
-        np, n = self.walk.np, len(self.walk.v)
-        total = np.zeros(n)
+        np, number, n = self.walk.np, self.walk.number, len(self.walk.v)
+        total = np.zeros(n, number)
         if acting is None:
             return total, np.zeros(n)
-        total += np.array([float(x) for x in acting.efforts])
+        total += np.array([number(x) for x in acting.efforts])
         size = np.abs(total)
         for link, (force, torque) in enumerate(acting.wrenches):
+            if is_zero(force) and is_zero(torque):
+                continue
             moved = self.walk.moved(link)
-            f, m = (moved.rotation @ np.array([float(x) for x in w]) for w in (force, torque))
+            f, m = (moved.rotation @ np.array([number(x) for x in w]) for w in (force, torque))
             total += moved.linear[:, :-1].T @ f + moved.angular[:, :-1].T @ m
             size += np.abs(moved.linear[:, :-1]).T @ np.abs(f)
             size += np.abs(moved.angular[:, :-1]).T @ np.abs(m)
@@ -145,7 +151,8 @@ class Bodies:
         driven, size = self._along(numeric.applied(self.walk.q, self.walk.v, driven=True))
         chords = numeric.chords(self.walk.q, self.walk.v)
         nothing = [0.0] * len(self.walk.v)
-        pushed = [float(x) for x in efforts(self.walk.tree, numeric.algebra, chords, nothing)]
+        pushed = efforts(self.walk.tree, numeric.algebra, chords, nothing)
+        pushed = np.array([self.walk.number(x) for x in pushed])
         return driven + pushed, size + np.abs(pushed)
 
     @cached_property
@@ -153,10 +160,10 @@ class Bodies:
         """Kinetic and potential energy, that of springs included; what networks store."""
         np = self.walk.np
         kinetic = potential = size = 0.0
-        for body in self._bodies:
+        for body in self.heavy:
             moved = body.moved
             u, w = moved.linear[:, -1:], moved.angular[:, -1:]
-            force, torque = self._needed(body, u, w)
+            force, torque = self.needed(body, u, w)
             kinetic += float((u.T @ force + w.T @ torque)[0, 0]) / 2
             height = self._gravity @ (body.mass * moved.origin + body.first)
             potential -= float(height)

@@ -72,8 +72,9 @@ class Constraints:
         """J, the rates and γ: φ differentiated once and twice; of velocities what is not to be, once."""
         np, n = self.walk.np, len(self.walk.v)
         found = [self._derived(k, e) for k, e in enumerate(equations(self.walk.tree))]
-        J = np.array([row for row, _, _ in found], float).reshape(-1, n)
-        rates, bias = (np.array([x[k] for x in found], float) for k in (1, 2))
+        number = self.walk.number
+        J = np.array([row for row, _, _ in found], number).reshape(-1, n)
+        rates, bias = (np.array([x[k] for x in found], number) for k in (1, 2))
         return J, rates, bias
 
     def _derived(self, k: int, equation: Equation) -> tuple[Array, float, float]:
@@ -111,7 +112,7 @@ class Constraints:
         du -= np.cross(tail.angular[:, -1], apart)
         change = df[:, -1] @ u[:, -1] + f[:, 0] @ du
         change += dm[:, -1] @ w[:, -1] + m[:, 0] @ (head.spin - tail.spin) - db[0, -1]
-        return along[:-1], float(along[-1] - b[0, 0]), -float(change)
+        return along[:-1], along[-1] - b[0, 0], -change
 
     def _seated(self, seat: Seat) -> Moved:
         return self.walk.moved(seat.link, seat.at, seat.rotation)

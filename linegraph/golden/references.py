@@ -1,30 +1,28 @@
 """What is known of a model's functions otherwise: the register of references.
 
-`walk` says how everything moves, `bodies` what that takes, `constraints` what is closed. What solves for
-accelerations is NumPy's.
+Each line says by which route, and what of a `Point` gives each result.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from linegraph.assembly import DEPENDENT
-from linegraph.closure import equations
-from linegraph.golden.bodies import NOISE, Bodies
 from linegraph.golden.constraints import Constraints
-from linegraph.golden.walk import Walk
+from linegraph.golden.operational import Operational
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping
 
-    from linegraph.derive import Derivation
+    from linegraph.golden.point import Point
     from linegraph.golden.walk import Valued
+    from linegraph.tips import NamedFrame
 
 NEWTON_EULER = "Newton's and Euler's equations of every body, from derivatives of its position"
 SOLVED = f"{NEWTON_EULER}; solved by NumPy with pivots"
 ROWS = "the constraints, differentiated along the motion of the bodies"
+BESIDE = f"{NEWTON_EULER}, calculated a complex step beside the state"
+PLACES = "where the bodies are, differentiated along the motion"
+MOMENTA = "the momentum of every body"
 
 
 class Reference(NamedTuple):
@@ -39,176 +37,6 @@ class Reference(NamedTuple):
     route: str
     results: Mapping[str, Callable[[Point], Valued]]
     given: Mapping[str, str] = {}
-
-
-@dataclass(frozen=True)
-class Point:
-    """A state with all that functions are given there, and what is known of it.
-
-    Attributes:
-        derivation: the model.
-        t: the time.
-        u: the inputs.
-        q, v, a: the state and accelerations, which are any.
-        q_off, v_off: coordinates beside q that close no loop, and velocities that need not be allowed.
-        kept: of the independent coordinates the places in q and in v.
-    """
-
-    derivation: Derivation
-    t: float
-    u: list[float]
-    q: list[float]
-    v: list[float]
-    a: list[float]
-    q_off: list[float]
-    v_off: list[float]
-    kept: tuple[tuple[int, ...], tuple[int, ...]] = ((), ())
-
-    @property
-    def s(self) -> list[float]:
-        """The independent coordinates."""
-        return [self.q[k] for k in self.kept[0]]
-
-    @property
-    def w(self) -> list[float]:
-        """Their rates."""
-        return [self.v[k] for k in self.kept[1]]
-
-    @property
-    def x(self) -> list[float]:
-        """The whole state."""
-        return [*self.q, *self.v]
-
-    @property
-    def q_near(self) -> list[float]:
-        """A guess beside q; q itself where constraints of velocity leave more positions than velocities."""
-        found = equations(self.walk.tree)
-        return self.q_off if all(e.holonomic for e in found) else self.q
-
-    def at(self, q: Sequence[float], v: Sequence[float]) -> Walk:
-        """How everything moves at a state."""
-        return Walk(self.derivation.numeric(None, self.t, self.u), q, v)
-
-    @cached_property
-    def walk(self) -> Walk:
-        """How everything moves here."""
-        return self.at(self.q, self.v)
-
-    @cached_property
-    def bodies(self) -> Bodies:
-        """What that takes."""
-        return Bodies(self.walk)
-
-    @cached_property
-    def closed(self) -> Constraints:
-        """What is closed."""
-        return Constraints(self.walk)
-
-    @cached_property
-    def force(self) -> Valued:
-        """Q - h."""
-        (Q, of_Q), (h, of_h) = self.bodies.forces, self.bodies.bias
-        return Q - h, of_Q + of_h
-
-    @cached_property
-    def stabilised(self) -> Valued:
-        """γ, with Baumgarte's terms if the model asks for them."""
-        bias, size = self.closed.bias
-        chosen = self.derivation.model.choices.baumgarte
-        if chosen is None:
-            return bias, size
-        alpha, beta = (float(self.walk.numeric.resolve(x)) for x in chosen)
-        rates, of_rates = self.closed.rates
-        phi, of_phi = (_padded(self.walk.np, x, len(bias)) for x in self.closed.position)
-        parts = 2 * abs(alpha) * of_rates + beta * beta * of_phi
-        return bias - (2 * alpha * rates + beta * beta * phi), size + parts
-
-    @cached_property
-    def motion(self) -> tuple[Valued, Valued]:
-        """v̇ and λ of ``M v̇ = Q - h + Jᵀ λ``, ``J v̇ = γ``, λ of least norm where it is not unique."""
-        np, n = self.walk.np, len(self.v)
-        (M, of_M), (force, of_force) = self.bodies.mass_matrix, self.force
-        J = np.zeros((0, n))
-        right, size = force, of_force
-        if self.walk.tree.closed:
-            J, (bias, of_bias) = self.closed.jacobian[0], self.stabilised
-            right, size = np.concatenate([force, bias]), np.concatenate([of_force, of_bias])
-        rows = np.block([[M, -J.T], [J, np.zeros((len(J), len(J)))]])
-        scale = self._scale(rows, of_M)
-        scaled, right, size = rows * scale * scale[:, None], right * scale, size * scale
-        inverse = np.linalg.pinv(scaled, rcond=1e-10) if len(J) else np.linalg.inv(scaled)
-        found = inverse @ right
-        found += inverse @ (right - scaled @ found)
-        # first order: how far errors in the rows and on the right carry, into what is not determined too
-        free = np.abs(np.eye(len(rows)) - inverse @ scaled) * bool(len(J))
-        parts = np.abs(inverse) @ (size + np.abs(scaled) @ np.abs(found))
-        parts += free @ (np.abs(scaled.T) @ np.abs(inverse.T @ found))
-        found, parts = found * scale, parts * scale
-        # of least norm: what does nothing along v is none of it, to the last digit
-        left, sizes, _ = np.linalg.svd(J, full_matrices=False)
-        left = left[:, sizes > DEPENDENT * sizes.max(initial=0.0)]
-        lam, of_lam = left @ (left.T @ found[n:]), parts[n:]
-        # what a plane mechanism does not need out of its plane is rounding
-        of_lam = np.maximum(of_lam, NOISE * of_lam.max(initial=0.0))
-        return (found[:n], parts[:n]), (lam, of_lam)
-
-    def _scale(self, rows: Any, of_M: Any) -> Any:
-        """What makes rank decide and not units.
-
-        Velocities are scaled to unit inertia, and all multipliers alike: the least norm stays theirs.
-        """
-        np, n = self.walk.np, len(self.v)
-        scale = np.ones(len(rows))
-        inertia = np.diag(of_M)
-        scale[:n] = 1 / np.sqrt(np.where(inertia > 0, inertia, inertia.max(initial=0.0) or 1.0))
-        scale[n:] = 1 / (np.abs(rows[n:, :n] * scale[:n]).max(initial=0.0) or 1.0)
-        return scale
-
-    @cached_property
-    def inverse(self) -> Valued:
-        """M a + h for any a."""
-        np = self.walk.np
-        (M, _), (h, size) = self.bodies.mass_matrix, self.bodies.bias
-        return M @ self.a + h, np.abs(M) @ np.abs(self.a) + size
-
-    @cached_property
-    def whole(self) -> Valued:
-        """q̇ and v̇."""
-        np = self.walk.np
-        pair = zip(self.walk.rates, self.motion[0], strict=True)
-        rates, sizes = (np.concatenate(both) for both in pair)
-        return rates, sizes
-
-    @cached_property
-    def reduction(self) -> tuple[Valued, Valued]:
-        """T and v̇ at ẇ = 0: what the constraints leave to the velocities that are not kept."""
-        np, n = self.walk.np, len(self.v)
-        (J, of_J), (bias, of_bias) = self.closed.jacobian, self.closed.bias
-        kept = list(self.kept[1])
-        others = [k for k in range(n) if k not in kept]
-        inverse = np.linalg.pinv(J[:, others], rcond=1e-10)
-        T, rest = np.zeros((n, len(kept))), np.zeros(n)
-        T[kept, range(len(kept))] = 1.0
-        T[others] = -inverse @ J[:, kept]
-        rest[others] = inverse @ bias
-        of_T, of_rest = np.abs(T), np.abs(rest)
-        of_T[others] = np.abs(inverse) @ of_J @ np.abs(T)
-        of_rest[others] = np.abs(inverse) @ (of_bias + of_J @ np.abs(rest))
-        return (T, of_T), (rest, of_rest)
-
-    @cached_property
-    def reduced(self) -> tuple[Valued, Valued]:
-        """``Tᵀ M T`` and ``Tᵀ (h + M rest)``."""
-        np = self.walk.np
-        (T, of_T), (rest, of_rest) = self.reduction
-        (M, of_M), (h, of_h) = self.bodies.mass_matrix, self.bodies.bias
-        of_force = of_h + of_M @ of_rest
-        whole = np.abs(of_T.T) @ of_M @ of_T, of_T.T @ of_force
-        return (T.T @ M @ T, whole[0]), (T.T @ (h + M @ rest), whole[1])
-
-
-def _padded(np: Any, entries: Any, size: int) -> Any:
-    return np.concatenate([entries, np.zeros(size - len(entries))])
 
 
 def _M(point: Point) -> Valued:
@@ -294,6 +122,66 @@ def _v_on(point: Point) -> Valued:
     return v, np.abs(v) + of_T @ np.abs(point.w)
 
 
+def _A(point: Point) -> Valued:
+    return point.slopes.state_by_state
+
+
+def _B(point: Point) -> Valued:
+    return point.slopes.state_by_inputs
+
+
+def _dtau_dq(point: Point) -> Valued:
+    return point.slopes.tau_by_changes
+
+
+def _dtau_dv(point: Point) -> Valued:
+    return point.slopes.tau_by_velocities
+
+
+def _dtau_dp(point: Point) -> Valued:
+    return point.slopes.tau_by_parameters
+
+
+def _da_dq(point: Point) -> Valued:
+    return point.slopes.motion_by_changes
+
+
+def _da_dv(point: Point) -> Valued:
+    return point.slopes.motion_by_velocities
+
+
+def _da_du(point: Point) -> Valued:
+    return point.slopes.motion_by_inputs
+
+
+def _da_dp(point: Point) -> Valued:
+    return point.slopes.motion_by_parameters
+
+
+def _com(point: Point) -> Valued:
+    return point.kinematics.com
+
+
+def _com_velocity(point: Point) -> Valued:
+    return point.kinematics.com_velocity
+
+
+def _Jcom(point: Point) -> Valued:
+    return point.kinematics.com_jacobian
+
+
+def _hg(point: Point) -> Valued:
+    return point.kinematics.momentum
+
+
+def _Ag(point: Point) -> Valued:
+    return point.kinematics.momentum_matrix
+
+
+def _Agdot_v(point: Point) -> Valued:
+    return point.kinematics.momentum_rate
+
+
 REFERENCES: dict[str, Reference] = {
     "mass_matrix": Reference(NEWTON_EULER, {"M": _M}),
     "bias": Reference(NEWTON_EULER, {"h": _h}),
@@ -319,5 +207,87 @@ REFERENCES: dict[str, Reference] = {
     ),
     "reduction": Reference(f"{ROWS}; solved by NumPy", {"T": _T, "rest": _rest}),
     "reduced_equations": Reference(f"{SOLVED}, {ROWS}", {"Mr": _Mr, "hr": _hr}),
+    "linearize": Reference(f"{BESIDE}; solved by NumPy", {"A": _A, "B": _B}),
+    "inverse_dynamics_derivatives": Reference(
+        BESIDE, {"dtau_dq": _dtau_dq, "dtau_dv": _dtau_dv, "dtau_da": _M}
+    ),
+    "forward_dynamics_derivatives": Reference(
+        f"{BESIDE}; solved by NumPy", {"da_dq": _da_dq, "da_dv": _da_dv, "da_du": _da_du}
+    ),
+    "inverse_dynamics_parameter_derivatives": Reference(BESIDE, {"dtau_dp": _dtau_dp}),
+    "forward_dynamics_parameter_derivatives": Reference(
+        f"{BESIDE}; solved by NumPy", {"da_dp": _da_dp}
+    ),
+    "center_of_mass": Reference("masses and places of the bodies", {"com": _com}),
+    "center_of_mass_velocity": Reference(MOMENTA, {"com_velocity": _com_velocity}),
+    "center_of_mass_jacobian": Reference(MOMENTA, {"Jcom": _Jcom}),
+    "momentum": Reference(MOMENTA, {"hg": _hg}),
+    "centroidal_momentum_matrix": Reference(MOMENTA, {"Ag": _Ag}),
+    "centroidal_momentum_bias": Reference(NEWTON_EULER, {"Agdot_v": _Agdot_v}),
 }
 """What is compared, and with what: a new function joins by a line here."""
+
+WHOLE = ("com", "com_velocity", "Jcom", "hg", "Ag", "Agdot_v")
+"""Results that `kinematics` has of the whole, as their own functions do."""
+
+
+def references(frames: Iterable[NamedFrame] = ()) -> dict[str, Reference]:
+    """The register, with the functions of some frames."""
+    found = dict(REFERENCES)
+    together = {
+        name: made for reference in REFERENCES.values() for name, made in reference.results.items()
+    }
+    together = {name: together[name] for name in WHOLE}
+    for frame in frames:
+        found |= _of_frame(frame)
+        for key in ("position", "rotation", "velocity", "jacobian", "jacobian_dot_v"):
+            together[f"{frame.identifier}_{key}"] = _in_place(frame, key)
+    found["kinematics"] = Reference(f"{PLACES}; {MOMENTA}", together)
+    return found
+
+
+def _of_frame(frame: NamedFrame) -> dict[str, Reference]:
+    """What is known of one frame."""
+
+    def place(key: str) -> Callable[[Point], Valued]:
+        return _in_place(frame, key)
+
+    def moved(rows: int) -> Reference:
+        known = (("Lambda", "inertia"), ("mu", "bias"), ("Jbar", "inverse"))
+        results = {name: _operational(frame, rows, key) for name, key in known}
+        return Reference(f"{PLACES}; {SOLVED}", results)
+
+    name = f"frame_{frame.identifier}"
+    return {
+        f"{name}_pose": Reference(
+            "where the bodies are",
+            {"position": place("position"), "rotation": place("rotation")},
+        ),
+        f"{name}_velocity": Reference(PLACES, {"velocity": place("velocity")}),
+        f"{name}_jacobian": Reference(PLACES, {"J": place("jacobian")}),
+        f"{name}_jacobian_dot_v": Reference(
+            f"{PLACES}, twice", {"Jdot_v": place("jacobian_dot_v")}
+        ),
+        f"{name}_operational_space": moved(6),
+        f"{name}_operational_position": moved(3),
+    }
+
+
+def _in_place(frame: NamedFrame, key: str) -> Callable[[Point], Valued]:
+    """What gives one result of a frame: a method of `Kinematics`."""
+
+    def made(point: Point) -> Valued:
+        return getattr(point.kinematics, key)(frame.name)  # type: ignore[no-any-return]
+
+    made.__name__ = f"frame_{frame.identifier}_{key}"
+    return made
+
+
+def _operational(frame: NamedFrame, rows: int, key: str) -> Callable[[Point], Valued]:
+    """What gives one result of a frame in operational space: a property of `Operational`."""
+
+    def made(point: Point) -> Valued:
+        return getattr(Operational(point, frame.name, rows), key)  # type: ignore[no-any-return]
+
+    made.__name__ = f"frame_{frame.identifier}_{key}_{rows}"
+    return made

@@ -13,16 +13,18 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.assembly import consistent
 from linegraph.errors import ModelError
-from linegraph.golden.references import REFERENCES, Point
-from linegraph.program import Routine
+from linegraph.golden.point import Point
+from linegraph.golden.references import Reference, references
+from linegraph.program import PREPARED_SUFFIX, Routine
 from linegraph.vectors import Expected, Values, Vectors
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from linegraph.derive import Derivation
     from linegraph.golden.walk import Valued
     from linegraph.program import Module, Program
+    from linegraph.tips import NamedFrame
 
 STATES = 10
 """How many states a model is asked at, that at rest included."""
@@ -42,25 +44,38 @@ EVEN = 300.0
 REGULAR = 1e4
 """Accelerations may be this much smaller than what they are made of; beyond, M is nearly singular."""
 
+SOLVED = ("a", "A", "B", "da_dq", "da_dv", "da_du", "da_dp", "Lambda")
+"""Results for which M is solved with."""
+
+Asked = dict[str, "Callable[[Point], Valued]"]
+"""The results of a function, and what gives them."""
+
 UNTESTED = {
     "prepare": "the functions that take its constants are called by those that are compared",
     "algebraic_loop": "called by functions that are compared",
     "loop_equations": "called by functions that are compared",
+    "constrained_slopes": "called by functions that are compared",
 }
 """Why a function is not called by itself; of all others, that no independent route is known."""
 
 NO_ROUTE = "there is no independent route to what it returns"
 EMPTY = "it returns nothing here"
 HANDED = "called by the function of its name without the ending"
+TWIN = (
+    "the function of its name without the ending, which is compared, from the constants of prepare"
+)
 
 
-def vectors(derivation: Derivation, module: Module, seed: int = 0) -> Vectors:
+def vectors(
+    derivation: Derivation, module: Module, seed: int = 0, frames: Sequence[NamedFrame] = ()
+) -> Vectors:
     """Golden vectors of all functions of a module that are known by another route.
 
     Args:
         derivation: the model.
         module: its functions as they are to be emitted.
         seed: of the random states.
+        frames: whose kinematics are among the functions.
 
     Returns:
         States with arguments q (nq), v (nv), u (nu), a (nv) in SI units, and the results there.
@@ -79,7 +94,8 @@ def vectors(derivation: Derivation, module: Module, seed: int = 0) -> Vectors:
         >>> vectors(derivation, module).values["M"].rows[0]
         (0.5,)
     """
-    chosen = [p for p in module.programs if _known(p)]
+    register = references(frames)
+    chosen = [p for p in module.programs if _known(register, p)]
     if not chosen:
         raise ModelError("tests", "nothing that is emitted is known by an independent route")
     draw = random.Random(seed)
@@ -87,11 +103,11 @@ def vectors(derivation: Derivation, module: Module, seed: int = 0) -> Vectors:
     for p in module.programs:
         details |= dict(p.details) if isinstance(p, Routine) else {}
     kept = (tuple(details.get("s_at", ())), tuple(details.get("w_at", ())))
-    points = _points(derivation, draw, kept, chosen)
+    points = _points(derivation, draw, kept, [_asked(register, p) for p in chosen])
     expected, values = [], {}
     given: dict[str, tuple[tuple[float, ...], ...]] = {}
     for program in chosen:
-        reference = REFERENCES[program.name]
+        reference = register[program.name]
         names = [a.name for a in program.arguments if a.name != "p"]
         keys = [reference.given.get(name, name) for name in names]
         for key in keys:
@@ -101,14 +117,18 @@ def vectors(derivation: Derivation, module: Module, seed: int = 0) -> Vectors:
             values[_key(made)] = _values(points, made, result.shape)
         made_keys = tuple(_key(made) for _, made in results)
         expected.append(Expected(program.name, reference.route, tuple(keys), made_keys))
-    return Vectors(len(points), given, values, tuple(expected), _untested(module))
+    return Vectors(len(points), given, values, tuple(expected), _untested(register, module))
 
 
-def _known(program: Program | Routine) -> bool:
-    reference = REFERENCES.get(program.name)
+def _known(register: Mapping[str, Reference], program: Program | Routine) -> bool:
+    reference = register.get(program.name)
     if reference is None or any(r.name not in reference.results for r in program.results):
         return False
     return _returns(program)
+
+
+def _asked(register: Mapping[str, Reference], program: Program | Routine) -> Asked:
+    return {r.name: register[program.name].results[r.name] for r in program.results}
 
 
 def _returns(program: Program | Routine) -> bool:
@@ -116,15 +136,19 @@ def _returns(program: Program | Routine) -> bool:
     return any(0 not in result.shape for result in program.results)
 
 
-def _untested(module: Module) -> tuple[tuple[str, str], ...]:
+def _untested(register: Mapping[str, Reference], module: Module) -> tuple[tuple[str, str], ...]:
     handed = {program.handed for program in module.programs}
+
+    compared = {program.name for program in module.programs if _known(register, program)}
 
     def why(program: Program | Routine) -> str:
         if program.name in handed:
             return HANDED
+        if program.name.removesuffix(PREPARED_SUFFIX) in compared:
+            return TWIN
         return UNTESTED.get(program.name, NO_ROUTE) if _returns(program) else EMPTY
 
-    return tuple((p.name, why(p)) for p in module.programs if not _known(p))
+    return tuple((p.name, why(p)) for p in module.programs if not _known(register, p))
 
 
 def _key(made: Callable[[Point], Valued]) -> str:
@@ -159,7 +183,7 @@ def _points(
     derivation: Derivation,
     draw: random.Random,
     kept: tuple[tuple[int, ...], tuple[int, ...]],
-    chosen: Sequence[Program | Routine],
+    chosen: Sequence[Asked],
 ) -> list[Point]:
     """All states; those of networks so near zero that no exponential law dwarfs one state by another."""
     reaches = REACHES if derivation.formulation.network is not None else REACHES[:1]
@@ -191,7 +215,7 @@ def _point(
     derivation: Derivation,
     draw: random.Random,
     kept: tuple[tuple[int, ...], tuple[int, ...]],
-    chosen: Sequence[Program | Routine],
+    chosen: Sequence[Asked],
     reach: float,
     *,
     rest: bool,
@@ -260,19 +284,23 @@ def _at_rest(derivation: Derivation) -> list[float]:
     return q
 
 
-def _defined(point: Point, chosen: Sequence[Program | Routine]) -> bool:
+def _defined(point: Point, chosen: Sequence[Asked]) -> bool:
     """Whether all is finite there, and accelerations are not what is left of far larger things."""
     np = point.walk.np
-    for program in chosen:
-        reference = REFERENCES[program.name]
-        for result in program.results:
-            try:
-                value, size = reference.results[result.name](point)
-            except np.linalg.LinAlgError:
-                return False
+    for name, made in (pair for asked in chosen for pair in asked.items()):
+        try:
+            value, size = made(point)
             if not (np.isfinite(value).all() and np.isfinite(size).all()):
                 return False
-            largest = 1 + np.abs(value).max(initial=0.0)
-            if result.name == "a" and size.max(initial=0.0) > REGULAR * largest:
+            if name in SOLVED and not _regular(np, *point.motion[0]):
                 return False
+            if name == "Lambda" and not _regular(np, value, size, least=0):
+                return False
+        except np.linalg.LinAlgError:
+            return False
     return True
+
+
+def _regular(np: Any, value: Any, size: Any, least: float = 1.0) -> bool:
+    largest = least + np.abs(value).max(initial=0.0)
+    return bool(size.max(initial=0.0) <= REGULAR * largest)

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from linegraph.algebra import Floats
 from linegraph.constraints.base import Pose
+from linegraph.golden.steps import Complexes
 from linegraph.jets import Jet, Jets, lifted
 from linegraph.layout import coordinates
 from linegraph.rotation import IDENTITY_MATRIX, product
@@ -123,39 +123,47 @@ class Walk:
         return numpy
 
     @cached_property
+    def number(self) -> Any:
+        """What it calculates with: float, or complex where it is a little beside a state (`steps`)."""
+        return complex if isinstance(self.numeric.algebra, Complexes) else float
+
+    @cached_property
     def _directions(self) -> Array:
         """The velocities by direction, n x (n + 1): each one alone, then the state's."""
-        own = self.np.array([self.v], float).T
+        own = self.np.array([self.v], self.number).T
         return self.np.hstack([self.np.eye(len(self.v)), own])
 
     @cached_property
     def rates(self) -> Valued:
         """``N v``."""
         np = self.np
-        by_direction = self._rates_by_direction
+        by_direction = self.rates_by_direction
         return by_direction[:, -1], np.abs(by_direction[:, :-1]) @ np.abs(self.v)
 
     @cached_property
-    def _rates_by_direction(self) -> Array:
+    def rates_by_direction(self) -> Array:
+        """``N``, a column for each velocity, then ``N v``."""
         np, size = self.np, len(self.v) + 1
-        found = coordinate_rates(self.tree, Floats(), self.q, list(self._directions))
-        rows = [np.broadcast_to(np.asarray(x, float), size) for x in found]
+        found = coordinate_rates(self.tree, self.numeric.algebra, self.q, list(self._directions))
+        rows = [np.broadcast_to(np.asarray(x, self.number), size) for x in found]
         return np.array(rows).reshape(len(self.q), size)
 
     @cached_property
     def _coordinates(self) -> tuple[Jet, ...]:
         """The coordinates as they move in each direction; second derivatives are right for the last one."""
-        rates = self._rates_by_direction
-        moving = [Jet(float(x), float(dx), 0.0) for x, dx in zip(self.q, rates[:, -1], strict=True)]
-        second = coordinate_rates(self.tree, Jets(Floats()), moving, list(map(float, self.v)))
+        rates = self.rates_by_direction
+        number, jets = self.number, Jets(self.numeric.algebra)
+        pairs = zip(self.q, rates[:, -1], strict=True)
+        moving = [Jet(number(x), number(dx), 0.0) for x, dx in pairs]
+        second = coordinate_rates(self.tree, jets, moving, list(map(number, self.v)))
         return tuple(
-            Jet(float(x), dx, lifted(change).dx)
+            Jet(number(x), dx, lifted(change).dx)
             for x, dx, change in zip(self.q, rates, second, strict=True)
         )
 
     def given(self, x: Jet) -> Jet:
         """What moves as prescribed: not at all where one velocity is looked at alone."""
-        alone = self.np.zeros(len(self.v) + 1)
+        alone = self.np.zeros(len(self.v) + 1, self.number)
         alone[-1] = x.dx
         return Jet(x.x, alone, x.ddx)
 
@@ -187,33 +195,36 @@ class Walk:
 
     def moved(self, link: int, at: Any = ZERO, rotation: Any = IDENTITY_MATRIX) -> Moved:
         """How a place on a link moves: the derivatives of where it is."""
-        np = self.np
-        pose = self.at(self.links, link, at, rotation)
-        parts = self.parts([*(x for row in pose.rotation for x in row), *pose.origin])
-        turn, turning, bending = (np.asarray(x[:9]).reshape(3, 3, -1) for x in parts)
+        np, number = self.np, self.number
+        arm, axes = np.array(at, number), np.array(rotation, number)
+        turns, shifts = self._places[link]
+        turn, turning, bending = (np.einsum("ijd,jk->ikd", x, axes) for x in turns)
+        origin, going, pull = (
+            x + np.einsum("ijd,j->id", y, arm) for x, y in zip(shifts, turns, strict=True)
+        )
         turn = turn[:, :, 0]
         # Ω = Ṙ Rᵀ, and its derivative along the state's own motion
         omega = np.einsum("ijd,kj->ikd", turning, turn)
         last = turning[:, :, -1]
         alpha = bending[:, :, -1] @ turn.T + last @ last.T
-        return Moved(
-            turn,
-            parts[0][9:, 0],
-            self._axial(omega),
-            parts[1][9:],
-            self._axial(alpha),
-            parts[2][9:, -1],
-        )
+        return Moved(turn, origin[:, 0], self._axial(omega), going, self._axial(alpha), pull[:, -1])
+
+    @cached_property
+    def _places(self) -> list[tuple[list[Array], list[Array]]]:
+        """Rotation and origin of every link, then of ground, each with its derivatives by direction."""
+        found = []
+        for pose in [*self.links, Pose(IDENTITY_MATRIX, ZERO)]:
+            parts = self.parts([*(x for row in pose.rotation for x in row), *pose.origin])
+            found.append(([x[:9].reshape(3, 3, -1) for x in parts], [x[9:] for x in parts]))
+        return found
 
     def parts(self, entries: Sequence[Any]) -> tuple[Array, Array, Array]:
         """Values, first and second derivatives of jets, by direction."""
         np, size = self.np, len(self.v) + 1
-        jets = [lifted(x) for x in entries]
-        parts = ([x.x for x in jets], [x.dx for x in jets], [x.ddx for x in jets])
-        x, dx, ddx = (
-            np.array([np.broadcast_to(np.asarray(y, float), size) for y in part]).reshape(-1, size)
-            for part in parts
-        )
+        x, dx, ddx = (np.empty((len(entries), size), self.number) for _ in range(3))
+        for k, entry in enumerate(entries):
+            jet = lifted(entry)
+            x[k], dx[k], ddx[k] = jet.x, jet.dx, jet.ddx
         return x, dx, ddx
 
     def _axial(self, skew: Array) -> Array:
