@@ -49,6 +49,7 @@ def _c(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
         name=module.name,
         macro=module.name.upper(),
         real=options.real,
+        width=max(24, *(len(x.function) for x in vectors.expected)),
         states=vectors.states,
         double=number(DOUBLE),
         single=number(SINGLE),

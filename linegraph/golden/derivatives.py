@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from linegraph.closure import equations
 from linegraph.golden.bodies import Bodies
 from linegraph.golden.constraints import Constraints
 from linegraph.golden.steps import STEP, Complexes, stepped
@@ -241,7 +242,7 @@ class Derivatives:
     @cached_property
     def _others(self) -> list[int]:
         """The velocities that the constraints determine."""
-        kept = self.point.kept[1]
+        kept = self.point.kept.velocities
         return [k for k in range(len(self.point.v)) if k not in kept]
 
     @cached_property
@@ -256,9 +257,9 @@ class Derivatives:
             self._basis @ J[:, self._others], self._basis @ right
         )
 
-    def _accelerations(self, walk: Walk) -> Array:
-        """ẇ at a state beside this one, whose velocities are brought onto the constraints from w."""
-        np, kept = walk.np, list(self.point.kept[1])
+    def _motion(self, walk: Walk) -> tuple[Array, Array]:
+        """V and ẇ at a state beside this one, whose velocities are brought onto the constraints from w."""
+        np, kept = walk.np, list(self.point.kept.velocities)
         start = Constraints(walk)
         J, rates = start.jacobian[0], start.rates[0]
         v = np.array(walk.v, complex)
@@ -271,31 +272,46 @@ class Derivatives:
         rest[self._others] = self._determined(J, closed.bias[0])
         M = bodies.mass_matrix[0]
         force = bodies.forces[0] - bodies.bias[0] - M @ rest
-        return np.linalg.solve(T.T @ M @ T, T.T @ force).imag / STEP
+        return v.imag / STEP, np.linalg.solve(T.T @ M @ T, T.T @ force).imag / STEP
 
-    def _of_independent(self, walks: Sequence[Walk]) -> Valued:
-        np, kept = self.point.walk.np, list(self.point.kept[1])
-        columns = [self._accelerations(walk) for walk in walks]
-        found = np.array(columns).reshape(len(walks), len(kept)).T
-        return found, self._sizes(found, self.point.motion[0][1][kept])
+    def _of_independent(self, walks: Sequence[Walk]) -> tuple[Array, Valued]:
+        """The derivatives of v and of ẇ."""
+        np, kept = self.point.walk.np, list(self.point.kept.velocities)
+        columns = [self._motion(walk) for walk in walks]
+        moved = np.array([v for v, _ in columns]).reshape(len(walks), len(self.point.v)).T
+        found = np.array([x for _, x in columns]).reshape(len(walks), len(kept)).T
+        return moved, (found, self._sizes(found, self.point.motion[0][1][kept]))
+
+    @cached_property
+    def _positions(self) -> Array:
+        """All changes of position for unit changes of those that are free, by the equations of position."""
+        np, free = self.point.walk.np, list(self.point.kept.changes)
+        count = sum(e.holonomic for e in equations(self.point.walk.tree))
+        rows = np.vstack([self.point.closed.jacobian[0][:count], np.eye(len(self.point.v))[free]])
+        right = np.vstack([np.zeros((count, len(free))), np.eye(len(free))])
+        return np.linalg.lstsq(rows, right, rcond=None)[0]
 
     @cached_property
     def _on_constraints(self) -> Valued:
-        """A of (s, w): q moves along T ds, and w by itself."""
-        np, T = self.point.walk.np, self.point.reduction[0][0]
-        count = T.shape[1]
-        along = self._motions @ T[: self._count]
+        """A of changes that keep the constraints: of position, and w by itself."""
+        np, T, D = self.point.walk.np, self.point.reduction[0][0], self._positions
+        free = list(self.point.kept.changes)
+        along = self._motions @ D[: self._count]
         walks = [self._beside(dq=dq) for dq in along.T] + [self._beside(dv=dv) for dv in T.T]
-        below, of_below = self._of_independent(walks)
-        above = np.hstack([np.zeros((count, count)), np.eye(count)])
-        return np.vstack([above, below]), np.vstack([above, of_below])
+        moved, (below, of_below) = self._of_independent(walks)
+        moved[: self._count, : len(free)] += self._bracket @ D[: self._count]
+        above = moved[free]
+        # what is zero is left of velocities, and of their parts along unit changes
+        fastest = max(1.0, np.abs(self.point.v[: self._count]).max(initial=0.0))
+        of_above = np.maximum(np.abs(above), fastest)
+        return np.vstack([above, below]), np.vstack([of_above, of_below])
 
     @cached_property
     def _by_inputs_on_constraints(self) -> Valued:
         np = self.point.walk.np
         units = np.eye(len(self.point.u))
-        below, of_below = self._of_independent([self._beside(du=du) for du in units])
-        above = np.zeros_like(below)
+        _, (below, of_below) = self._of_independent([self._beside(du=du) for du in units])
+        above = np.zeros((len(self.point.kept.changes), len(units)))
         return np.vstack([above, below]), np.vstack([above, of_below])
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.assembly import DEPENDENT
 from linegraph.closure import equations
@@ -25,6 +25,17 @@ if TYPE_CHECKING:
     from linegraph.golden.walk import Valued
 
 
+class Kept(NamedTuple):
+    """What is independent under constraints: places of coordinates, of velocities, of changes of position."""
+
+    coordinates: tuple[int, ...] = ()
+    velocities: tuple[int, ...] = ()
+    changes: tuple[int, ...] = ()
+
+
+NOTHING = Kept()
+
+
 @dataclass(frozen=True)
 class Point:
     """A state with all that functions are given there, and what is known of it.
@@ -35,7 +46,7 @@ class Point:
         u: the inputs.
         q, v, a: the state and accelerations, which are any.
         q_off, v_off: coordinates beside q that close no loop, and velocities that need not be allowed.
-        kept: of the independent coordinates the places in q and in v.
+        kept: what is independent.
     """
 
     derivation: Derivation
@@ -46,17 +57,17 @@ class Point:
     a: list[float]
     q_off: list[float]
     v_off: list[float]
-    kept: tuple[tuple[int, ...], tuple[int, ...]] = ((), ())
+    kept: Kept = NOTHING
 
     @property
     def s(self) -> list[float]:
         """The independent coordinates."""
-        return [self.q[k] for k in self.kept[0]]
+        return [self.q[k] for k in self.kept.coordinates]
 
     @property
     def w(self) -> list[float]:
         """Their rates."""
-        return [self.v[k] for k in self.kept[1]]
+        return [self.v[k] for k in self.kept.velocities]
 
     @property
     def x(self) -> list[float]:
@@ -178,7 +189,7 @@ class Point:
         """T and v̇ at ẇ = 0: what the constraints leave to the velocities that are not kept."""
         np, n = self.walk.np, len(self.v)
         (J, of_J), (bias, of_bias) = self.closed.jacobian, self.closed.bias
-        kept = list(self.kept[1])
+        kept = list(self.kept.velocities)
         others = [k for k in range(n) if k not in kept]
         inverse = np.linalg.pinv(J[:, others], rcond=1e-10)
         T, rest = np.zeros((n, len(kept))), np.zeros(n)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.assembly import consistent
 from linegraph.errors import ModelError
-from linegraph.golden.point import Point
+from linegraph.golden.point import Kept, Point
 from linegraph.golden.references import Reference, references
 from linegraph.program import PREPARED_SUFFIX, Routine
 from linegraph.vectors import Expected, Values, Vectors
@@ -102,7 +102,7 @@ def vectors(
     details: dict[str, Any] = {}
     for p in module.programs:
         details |= dict(p.details) if isinstance(p, Routine) else {}
-    kept = (tuple(details.get("s_at", ())), tuple(details.get("w_at", ())))
+    kept = Kept(*(tuple(details.get(key, ())) for key in ("s_at", "w_at", "d_at")))
     points = _points(derivation, draw, kept, [_asked(register, p) for p in chosen])
     expected, values = [], {}
     given: dict[str, tuple[tuple[float, ...], ...]] = {}
@@ -182,7 +182,7 @@ def _short(x: float, digits: int = DIGITS) -> float:
 def _points(
     derivation: Derivation,
     draw: random.Random,
-    kept: tuple[tuple[int, ...], tuple[int, ...]],
+    kept: Kept,
     chosen: Sequence[Asked],
 ) -> list[Point]:
     """All states; those of networks so near zero that no exponential law dwarfs one state by another."""
@@ -214,7 +214,7 @@ def _even(points: Sequence[Point]) -> bool:
 def _point(
     derivation: Derivation,
     draw: random.Random,
-    kept: tuple[tuple[int, ...], tuple[int, ...]],
+    kept: Kept,
     chosen: Sequence[Asked],
     reach: float,
     *,
