@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from linegraph import vector
 from linegraph.algebra import Constants
 from linegraph.body import Body, Placement
+from linegraph.formula import Formula
 from linegraph.joints import Joint, Moments
 from linegraph.joints.base import Restriction, point_apart, second_moments
+from linegraph.parameters import Parameter
 from linegraph.rotation import Diagonal, Rotation, product, rotation_of, snapped
 from linegraph.vector import ZERO, Matrix, Scalar, Vector
 
@@ -29,6 +31,9 @@ if TYPE_CHECKING:
     from linegraph.program import Quantity
 
 Resolve = Callable[[Any], Scalar]
+
+LEAST_MASS = 1e-37
+"""In kg: less is no mass, and no number with all its digits among floats."""
 
 
 @dataclass(frozen=True)
@@ -326,6 +331,10 @@ def mass_center(body: Body, resolve: Resolve) -> Vector:
     if body.first is None:
         return resolved(body.center or ZERO, resolve)
     mass = resolve(body.mass)
+    if isinstance(body.mass, Parameter) and body.mass.value == 0:
+        # a link that is given some later: until then 0/0 is to be 0
+        named, least = Formula("name", (body.mass.name,)), Formula("number", (LEAST_MASS,))
+        mass = resolve(Formula("max", (named, least)))
     first = resolved(body.first, resolve)
     return ZERO if mass == 0 else (first[0] / mass, first[1] / mass, first[2] / mass)
 

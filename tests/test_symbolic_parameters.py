@@ -144,3 +144,21 @@ def test_an_undeclared_symbol_is_named() -> None:
     model.revolute("hinge", between=("ground", bob), axis=(0, 1, 0))
     with pytest.raises(lg.ModelError, match='parameter "m": is used but not declared'):
         render(model)
+
+
+def test_a_robot_with_massless_links_has_finite_reactions(tmp_path: Path) -> None:
+    """A link without mass has its mass centre at its origin, also while its mass is a symbol."""
+    path = "examples/panda/panda.urdf"
+    found = []
+    for name, folded in (("lettered", False), ("numbered", True)):
+        only = ("across", "reactions")
+        files = render(lg.read(path, symbolic=not folded), name=name, folded=folded, only=only)
+        found.append(load(files, name, tmp_path))
+    lettered, numbered = found
+    rng = np.random.default_rng(2)
+    q, v, u = rng.normal(size=8), rng.normal(size=8), rng.normal(size=8)
+    p = lettered.DEFAULT_PARAMETERS
+    assert np.allclose(lettered.across(p, q, v), numbered.across(q, v), rtol=0, atol=1e-13)
+    assert np.allclose(
+        lettered.reactions(p, q, v, u), numbered.reactions(q, v, u), rtol=0, atol=1e-11
+    )
