@@ -61,6 +61,11 @@ PREPARED = (
     "centroidal_momentum_matrix",
     "centroidal_momentum_bias",
     "kinematics",
+    "constrained_slopes",
+    "linearize",
+    "inverse_dynamics_derivatives",
+    "forward_dynamics_derivatives",
+    "regressor",
 )
 """The functions of simulation and control; the others read what few parameters they need themselves."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import inspect
 import re
 import subprocess
@@ -200,14 +201,25 @@ def given_to(module: Any, model: lg.Model, rng: np.random.Generator) -> dict[str
     }
 
 
+def requested(model: lg.Model) -> list[str]:
+    """Functions on request that read constants, as far as the model has them."""
+    found = []
+    for function in ("linearize", "inverse_dynamics_derivatives", "regressor"):
+        with contextlib.suppress(lg.ModelError):
+            module_for(model, "asked", only=(function,))
+            found.append(function)
+    return found
+
+
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_every_prepared_function_is_its_contract_s_equal(name: str, tmp_path: Path) -> None:
     model = modelfile.read(EXAMPLES / name / f"{name}.toml")
-    files = render(model)
+    files = render(model, functions=requested(model))
     module = load(files, name, tmp_path)
     compiled = Compiled(files, name, tmp_path, flags=("-O0",))
     rng = np.random.default_rng(len(name))
     given = given_to(module, model, rng)
+    given["lam"] = rng.normal(size=getattr(module, "NC", 0))
     values = module.DEFAULT_PARAMETERS._values()
     if not lg.derive(model).structure.closed:
         values = {key: x * rng.uniform(0.95, 1.05) for key, x in values.items()}
