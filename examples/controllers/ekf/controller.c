@@ -43,7 +43,7 @@ static int predict(controller *self) {
     double FP[NX * NX];
     int status;
 
-    status = furuta_linearize(&furuta_default_parameters, self->x, &self->x[NQ], &self->u, A, B);
+    status = furuta_linearize_prepared(self->model, self->x, &self->x[NQ], &self->u, A, B);
     if (status == 0) {
         status = numerics_rk4(rates, self, NX, 0.0, PERIOD, self->x);
     }
