@@ -7,6 +7,7 @@ functions very often at drawn states, and for a Cortex-M4, which QEMU runs.
 
 from __future__ import annotations
 
+import contextlib
 import re
 import shutil
 import subprocess
@@ -27,8 +28,9 @@ from numpy.typing import NDArray
 import codegen
 import codegen.layout
 import codegen.real
-from linegraph import modelfile, urdf
+from linegraph import ModelError, modelfile, urdf
 from linegraph.emission import module_for
+from linegraph.programs import OF_FRAMES, ON_REQUEST
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -62,6 +64,20 @@ COMPILERS = {
     "arm": ("arm-none-eabi-gcc", "-std=c99", *CORTEX_M4, *OF_C),
 }
 EMULATOR = ("qemu-system-arm", "-M", "mps2-an386", "-nographic", "-semihosting", "-kernel")
+
+
+MORE = "+"
+REQUESTED = (
+    "furuta",
+    "four_bar",
+    "bicycle",
+    "cart_pole_motor",
+    "panda_floating",
+    "anymal_floating",
+    "ship_arm",
+    "tree3",
+)
+"""Models that are emitted with all functions on request, too, under names that end in +."""
 
 
 def _file(path: Path) -> Callable[[], Model]:
@@ -114,13 +130,26 @@ def _robots() -> dict[str, Callable[[], Model]]:
 def everything() -> dict[str, Callable[[], Model]]:
     """Every model by name: examples, robots, random trees, closed systems, networks."""
     examples = {path.stem: _file(path) for path in sorted(EXAMPLES.glob("*/*.toml"))}
-    return examples | _robots() | _trees() | _closed() | _networks()
+    found = examples | _robots() | _trees() | _closed() | _networks()
+    return found | {f"{name}{MORE}": found[name] for name in REQUESTED}
 
 
 @cache
 def module(name: str) -> Module:
-    """All functions of a model; name `model` in the files."""
-    return module_for(everything()[name](), "model")
+    """All functions of a model, of names that end in + those on request, too; `model` in the files.
+
+    The audit of powers is left out: its sums are rounding and nothing else.
+    """
+    model = everything()[name]()
+    if not name.endswith(MORE):
+        return module_for(model, "model")
+    frames = (list(model.bodies)[-1],)
+    wanted = []
+    for function in sorted({*ON_REQUEST} - {"power"}):
+        with contextlib.suppress(ModelError):
+            module_for(model, "model", only=(function,), frames=frames * (function in OF_FRAMES))
+            wanted.append(function)
+    return module_for(model, "model", functions=wanted, frames=frames)
 
 
 @cache

@@ -29,6 +29,8 @@ DOZEN = (
     "loop1",
     "network3",
     "mixed1",
+    "furuta+",
+    "four_bar+",
 )
 CALLS, FEW_CALLS = 1_000_000, 100_000
 """Calls of functions under sanitizers, over all models together; of a dozen."""
