@@ -24,7 +24,12 @@ pytestmark = pytest.mark.skipif(
 
 @pytest.mark.parametrize(
     ("name", "optimised"),
-    [*((name, "-O2") for name in MODELS), ("four_bar", "-Os"), ("crane", "-O0")],
+    [
+        *((name, "-O2") for name in MODELS),
+        ("four_bar+", "-Os"),
+        ("furuta+", "-O2"),
+        ("crane", "-O0"),
+    ],
 )
 def test_results_are_those_of_this_machine(name: str, optimised: str, tmp_path: Path) -> None:
     module = targets.module(name)
@@ -46,7 +51,7 @@ def test_results_are_those_of_this_machine(name: str, optimised: str, tmp_path: 
             assert np.abs(own - other).max(initial=0.0) <= ACCURACY * size, function
 
 
-@pytest.mark.parametrize("name", ["panda", "four_bar", "ring_modulator"])
+@pytest.mark.parametrize("name", ["panda", "four_bar+", "ring_modulator"])
 def test_nothing_is_computed_in_doubles(name: str, tmp_path: Path) -> None:
     made = targets.compiled(targets.emitted(name, "float"), tmp_path, COMPILERS["arm"], ("-O2",))
     code = targets.run(["arm-none-eabi-objdump", "-d", "-r", made.name], tmp_path)

@@ -19,7 +19,7 @@ from codegen import stack
 if TYPE_CHECKING:
     from pathlib import Path
 
-FEW = ("double_pendulum", "four_bar", "network3")
+FEW = ("furuta+", "four_bar+", "network3")
 LEVELS = ("-O0", "-O2", "-O3")
 MACHINES = {"gcc": ("gcc",), "arm": ("arm-none-eabi-gcc", *CORTEX_M4)}
 NAMES = tuple(targets.everything())
