@@ -59,3 +59,6 @@ def test_all_functions_and_counts_are_there() -> None:
             assert f"| `{name}` |" in TEXT
     rows = re.findall(r"^\| (\w+)[^|]*\| (\d+) / \d+ \| (\d+) / \d+ \|$", TEXT, re.MULTILINE)
     assert {name.lower(): (int(a), int(b)) for name, a, b in rows} == SLOPES_MOST
+    inverse, forward = SLOPES_MOST["panda"]
+    readme = re.sub(r"\s+", " ", (ROOT / "README.md").read_text())
+    assert f"The Panda's take {inverse} and {forward} operations" in readme
