@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 from linegraph.derive import derive, placed
 from linegraph.errors import ModelError
 from linegraph.files import write_all
+from linegraph.named_frames import named_frames
 from linegraph.programs import ON_REQUEST, PROGRAMS, module_of
-from linegraph.tips import NamedFrame, require_frame
 from linegraph.version import __version__
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from linegraph.model import Model
     from linegraph.program import Module
+    from linegraph.tips import NamedFrame
     from linegraph.vectors import Vectors
 
 CONVENTIONS = (
@@ -123,7 +124,7 @@ def render(
         files |= codegen.render(module, language, choices)
     if tests:
         tell("computing golden vectors")
-        found = _vectors(model, module, _named(model, frames))
+        found = _vectors(model, module, named_frames(model, frames))
         for language in chosen:
             files |= codegen.render_tests(module, found, language, choices)
     return files
@@ -166,7 +167,7 @@ def module_for(
             if function not in known:
                 raise ModelError(f'function "{function}"', f"is not one of {', '.join(known)}")
     about = [*about, *CONVENTIONS]
-    named = _named(model, frames)
+    named = named_frames(model, frames)
     derivation = derive(model)
     try:
         return module_of(
@@ -180,19 +181,3 @@ def module_for(
         )
     except ModelError as error:
         raise placed(error, model) from None
-
-
-def _named(model: Model, frames: Iterable[str]) -> list[NamedFrame]:
-    """Frames with what they are called in functions' names.
-
-    Raises:
-        ModelError: there is no such frame.
-        NameRefused: two are called alike.
-    """
-    from codegen import naming
-
-    names = list(dict.fromkeys(frames))
-    for name in names:
-        require_frame(model, name)
-    called = naming.identifiers(names, "frame", naming.stem)
-    return [NamedFrame(*pair) for pair in zip(called, names, strict=True)]

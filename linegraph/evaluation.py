@@ -12,14 +12,15 @@ import sympy
 import codegen
 from linegraph.checks import nearest
 from linegraph.errors import ModelError
+from linegraph.named_frames import named_frames
 from linegraph.program import Module, Result, reads
-from linegraph.programs import PROGRAMS, module_of, parameters_of
+from linegraph.programs import OF_FRAMES, PROGRAMS, module_of, parameters_of
 from linegraph.shared import Functions
 from linegraph.symbol_names import symbol_names
 from linegraph.sympy_walk import evaluate
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from linegraph.derive import Derivation
 
@@ -79,7 +80,7 @@ class Function:
         return f"<function {self.name}({', '.join(self.arguments)}) of {self.model}>"
 
 
-def function(derivation: Derivation, what: Any) -> Function:
+def function(derivation: Derivation, what: Any, frames: Iterable[str] = ()) -> Function:
     """An emitted function by its name, or one that computes a sympy expression.
 
     Raises:
@@ -89,12 +90,21 @@ def function(derivation: Derivation, what: Any) -> Function:
     if not isinstance(what, str):
         return _of_expression(derivation, name, what)
     folded = not derivation.model.parameters
-    only = (what,) if what in PROGRAMS else ()
-    module = module_of(derivation, name, folded=folded, about=(), only=only)
+    named = named_frames(derivation.model, frames)
+    only = _maker(what) if named or what in PROGRAMS else ()
+    module = module_of(derivation, name, folded=folded, about=(), only=only, frames=named)
     known = [program.name for program in module.programs]
     if what not in known:
         raise ModelError(f'function "{what}"', f"is not there; {nearest(what, known)}")
     return _loaded(derivation, module, what)
+
+
+def _maker(what: str) -> tuple[str, ...]:
+    """The key of `PROGRAMS` that makes a function, where it is known by the function's name."""
+    if what.startswith("frame_"):
+        kinds = [key for key in OF_FRAMES if what.endswith(key)]
+        return (*kinds, "frames")[:1]
+    return (what,) if what in PROGRAMS else ()
 
 
 def _of_expression(derivation: Derivation, name: str, what: Any) -> Function:

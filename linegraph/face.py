@@ -7,7 +7,7 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from linegraph.base_parameters import BaseParameters
     from linegraph.derive import Derivation
@@ -232,12 +232,14 @@ class Face:
 
     # -- numbers
 
-    def function(self, what: Any = "equations") -> Function:
+    def function(self, what: Any = "equations", frames: Iterable[str] = ()) -> Function:
         """A fast function of one state or many, from the Python that `emit` writes.
 
         Args:
             what: the name of an emitted function (``mass_matrix``, ``bias``, ``rhs``, ...), or
                 a sympy expression or matrix of this derivation's symbols.
+            frames: bodies, or frames of bodies as ``body.frame``, whose functions may be asked for, such as
+                ``frame_hand_pose``, or all of them by ``kinematics``.
 
         Returns:
             A function of what the emitted one takes without parameters: ``f(q)``, ``f(q, v)``, ...
@@ -248,7 +250,7 @@ class Face:
         """
         from linegraph.evaluation import function
 
-        return function(self._derivation, what)
+        return function(self._derivation, what, frames)
 
     # -- looks
 

@@ -16,7 +16,7 @@ from emitted import load
 from test_pinocchio import readable
 
 from codegen import naming
-from linegraph import urdf
+from linegraph import ModelError, derive, urdf
 from linegraph.emission import render
 
 pytest.importorskip("pinocchio")
@@ -213,3 +213,18 @@ def test_operational_space_agrees_with_pinocchio(
         for result, there in zip(emitted(q, v), expected, strict=True):
             assert relative(result, there) < TOLERANCE
     assert compared > 10
+
+
+def test_a_derivation_is_asked_for_frames() -> None:
+    derivation = derive(urdf.read("examples/panda/panda.urdf"))
+    q = np.array([0.1, -0.3, 0.2, -2.0, 0.3, 2.0, 0.8, 0.02])
+    hand = ("panda_hand",)
+    position, rotation = derivation.function("frame_panda_hand_pose", frames=hand)(q)
+    assert position.shape == (3,)
+    assert np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-14)
+    J = derivation.function("frame_panda_hand_jacobian", frames=hand)(q)
+    Lambda, *_ = derivation.function("frame_panda_hand_operational_space", frames=hand)(q, 0 * q)
+    M = derivation.function("mass_matrix")(q)
+    assert np.allclose(Lambda @ J @ np.linalg.solve(M, J.T), np.eye(6), atol=1e-11)
+    with pytest.raises(ModelError, match="is not there"):
+        derivation.function("frame_panda_hand_pose")

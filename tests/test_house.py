@@ -78,6 +78,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("derivative_programs",),
     ("programs",),
     ("codegen", "golden", "trees"),
+    ("named_frames",),
     ("appearance", "evaluation"),
     ("checking", "cli_options", "emission", "report"),
     ("cli",),
@@ -123,7 +124,12 @@ ONLY_THERE = {
     "jinja2": {"codegen.templates"},
     "lxml": {"linegraph.urdf.document"},
     "matplotlib": {"linegraph.drawing.png"},
-    "codegen": {"linegraph.emission", "linegraph.evaluation", "linegraph.cli"},
+    "codegen": {
+        "linegraph.emission",
+        "linegraph.evaluation",
+        "linegraph.named_frames",
+        "linegraph.cli",
+    },
 }
 FORBIDDEN = {"eval", "exec", "compile", "__import__", "parse_expr", "lambdify", "system", "popen"}
 FORBIDDEN_MODULES = {"pickle", "marshal", "shelve", "subprocess", "ctypes", "code"}
