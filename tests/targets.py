@@ -437,7 +437,9 @@ def misfits(of: Module, states: int, double: str, real: str) -> list[str]:
 
 
 GAP = float(codegen.real.TOLERANCES["float"]["closed"])
-SOLVING = re.compile("forward_dynamics|rhs|reactions$|drives|power|outputs")
+SOLVING = re.compile(
+    "forward_dynamics|linearize|.*_operational_|rhs|reactions$|drives|power|outputs"
+)
 
 
 def _condition(of: Module, rows: Sequence[tuple[str, int, Array]]) -> float:
