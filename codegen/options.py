@@ -46,6 +46,8 @@ class Options:
             value = getattr(self, what)
             if value not in known:
                 raise ModelError(f'{what} "{value}"', f"is not known; known: {', '.join(known)}")
+        if not isinstance(self.prefix, str | None):
+            raise ModelError("prefix", f"is a text, not {self.prefix!r}")
         for what in ("batch", "cmake", "arduino", "report"):
             if not isinstance(getattr(self, what), bool):
                 raise ModelError(what, f"is True or False, not {getattr(self, what)!r}")

@@ -17,10 +17,11 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 
 from linegraph.algebra import Floats
+from linegraph.checks import nearest
 from linegraph.differentiation import Replay
 from linegraph.errors import ModelError
 from linegraph.expression import Node
-from linegraph.parameters import valued
+from linegraph.parameters import is_number, valued
 from linegraph.standard_parameters import JOINT_PARTS
 
 if TYPE_CHECKING:
@@ -138,7 +139,9 @@ class BaseParameters:
         declared = self.derivation.model.parameters
         for name in given:
             if name not in declared:
-                raise ModelError(f'parameter "{name}"', "is not there")
+                raise ModelError(f'parameter "{name}"', f"is not there; {nearest(name, declared)}")
+            if not is_number(given[name]):
+                raise ModelError(f'parameter "{name}"', f"is a number, not {given[name]!r}")
 
         def value(p: Any) -> float:
             x = given.get(p.name, p.value)

@@ -108,13 +108,18 @@ def render(
     import codegen
 
     tell = progress or (lambda text: None)
-    chosen = list(dict.fromkeys(languages or codegen.LANGUAGES))
-    frames = tuple(frames)
+    chosen = list(dict.fromkeys(_several(languages or codegen.LANGUAGES)))
+    frames, functions, only = _several(frames), _several(functions), _several(only)
     for language in chosen:
         if language not in codegen.LANGUAGES:
             known = ", ".join(codegen.LANGUAGES)
             raise ModelError(f'language "{language}"', f"is not known; known: {known}")
     choices = codegen.options_of(options)
+    if "c" not in chosen and choices != codegen.Options():
+        given = ", ".join(
+            name for name, x in options.items() if x not in (None, False, "libm", "double")
+        )
+        raise ModelError(f"options of C ({given})", "C is not written: add it to the languages")
     prefix = codegen.naming.identifier(model.name) if name is None else name
     tell("deriving")
     module = module_for(model, prefix, folded=folded, functions=functions, only=only, frames=frames)
@@ -128,6 +133,11 @@ def render(
         for language in chosen:
             files |= codegen.render_tests(module, found, language, choices)
     return files
+
+
+def _several(names: Iterable[str]) -> tuple[str, ...]:
+    """Names; one alone is one."""
+    return (names,) if isinstance(names, str) else tuple(names)
 
 
 def _vectors(model: Model, module: Module, frames: Sequence[NamedFrame]) -> Vectors:

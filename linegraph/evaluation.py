@@ -13,8 +13,9 @@ import codegen
 from linegraph.checks import nearest
 from linegraph.errors import ModelError
 from linegraph.named_frames import named_frames
-from linegraph.program import Module, Result, reads
+from linegraph.program import PREPARED_SUFFIX, Module, Result, reads
 from linegraph.programs import OF_FRAMES, PROGRAMS, module_of, parameters_of
+from linegraph.prologue import PREPARE
 from linegraph.shared import Functions
 from linegraph.symbol_names import symbol_names
 from linegraph.sympy_walk import evaluate
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
 
 NAME = "expression"
 """The function that computes a sympy expression."""
+
+FRAME_FUNCTIONS = "frame_"
+"""How the names of functions of frames begin."""
 
 
 @dataclass(frozen=True)
@@ -89,19 +93,23 @@ def function(derivation: Derivation, what: Any, frames: Iterable[str] = ()) -> F
     name = codegen.naming.identifier(derivation.model.name)
     if not isinstance(what, str):
         return _of_expression(derivation, name, what)
+    if what == PREPARE or what.endswith(PREPARED_SUFFIX):
+        problem = "the order of its constants is that of one emitted file; ask for the function without them"
+        raise ModelError(f'function "{what}"', problem)
     folded = not derivation.model.parameters
     named = named_frames(derivation.model, frames)
     only = _maker(what) if named or what in PROGRAMS else ()
     module = module_of(derivation, name, folded=folded, about=(), only=only, frames=named)
     known = [program.name for program in module.programs]
     if what not in known:
-        raise ModelError(f'function "{what}"', f"is not there; {nearest(what, known)}")
+        frame = "; its frame has to be in frames=(...)" * what.startswith(FRAME_FUNCTIONS)
+        raise ModelError(f'function "{what}"', f"is not there; {nearest(what, known)}{frame}")
     return _loaded(derivation, module, what)
 
 
 def _maker(what: str) -> tuple[str, ...]:
     """The key of `PROGRAMS` that makes a function, where it is known by the function's name."""
-    if what.startswith("frame_"):
+    if what.startswith(FRAME_FUNCTIONS):
         kinds = [key for key in OF_FRAMES if what.endswith(key)]
         return (*kinds, "frames")[:1]
     return (what,) if what in PROGRAMS else ()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import tempfile
 from pathlib import Path
@@ -12,6 +13,10 @@ from linegraph.errors import LinegraphError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+
+STAGED = ".linegraph-"
+"""How the names begin that files have before they have their own."""
 
 
 def write_all(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]) -> list[Path]:
@@ -31,21 +36,27 @@ def write_all(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]) 
         target.mkdir(parents=True, exist_ok=True)
         for name, content in files.items():
             staged.append((_stage(target, content), target / name))
-        for temporary, final in staged:
+        for _, final in staged:
             final.parent.mkdir(parents=True, exist_ok=True)
+            if final.is_dir():
+                raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(final))
+        for temporary, final in staged:
             os.replace(temporary, final)
     except OSError as error:
         for temporary, _ in staged:
             with contextlib.suppress(OSError):
                 os.unlink(temporary)
         reason = error.strerror or str(error)
-        raise LinegraphError(f"cannot write to {os.fspath(folder)}: {reason}") from None
+        place = os.fspath(folder)
+        if error.filename and not Path(error.filename).name.startswith(STAGED):
+            place = str(error.filename)
+        raise LinegraphError(f"cannot write to {place}: {reason}") from None
     return [final for _, final in staged]
 
 
 def _stage(folder: Path, content: str | bytes) -> str:
     """Write to a new file in the folder, with the permissions of an ordinary one."""
-    handle, temporary = tempfile.mkstemp(prefix=".linegraph-", dir=folder)
+    handle, temporary = tempfile.mkstemp(prefix=STAGED, dir=folder)
     try:
         with os.fdopen(handle, "wb") as stream:
             stream.write(content.encode("utf-8") if isinstance(content, str) else content)

@@ -21,7 +21,7 @@ def named_frames(model: Model, frames: Iterable[str]) -> list[NamedFrame]:
     """
     from codegen import naming
 
-    names = list(dict.fromkeys(frames))
+    names = list(dict.fromkeys((frames,) if isinstance(frames, str) else frames))
     for name in names:
         require_frame(model, name)
     called = naming.identifiers(names, "frame", naming.stem)

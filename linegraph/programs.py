@@ -59,7 +59,7 @@ def module_of(
         folded: whether parameters become numbers.
         about: paragraphs for the head of the file.
         wanted: further functions to emit, of `ON_REQUEST`.
-        only: nothing but these of `PROGRAMS` and what they call; all if there are none.
+        only: nothing but these of `PROGRAMS`, those `wanted`, and what they call; all if there are none.
         frames: the frames whose kinematics are to be emitted.
         prologue: whether what parameters alone determine is hoisted into a function of its own.
 
@@ -72,7 +72,7 @@ def module_of(
     asked = _asked(wanted, only, frames)
     functions = Functions(derivation, folded or not parameters, frames, asked)
     made = _made(functions, [key for key in PROGRAMS if key in asked])
-    for key in only or wanted:
+    for key in (*only, *wanted):
         if not made[key]:
             raise ModelError(
                 f'function "{key}"',
@@ -124,10 +124,11 @@ def _asked(
     if not only:
         asked = (*(set(PROGRAMS) - set(ON_REQUEST)), *wanted)
         return (*asked, *kinematic_programs.besides(asked, frames))
-    if frames and not {"kinematics", *OF_FRAMES} & set(only):
+    asked = (*only, *wanted)
+    if frames and not {"kinematics", *OF_FRAMES} & set(asked):
         problem = f"nothing of it is asked for: {', '.join(OF_FRAMES)} or kinematics would be"
         raise ModelError(f'frame "{frames[0].name}"', problem)
-    return only
+    return asked
 
 
 def _made(functions: Functions, keys: Iterable[str]) -> dict[str, tuple[Program | Routine, ...]]:
