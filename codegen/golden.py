@@ -46,6 +46,9 @@ def _c(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
     text = templates.fill(
         "c/golden.c.jinja",
         file=file,
+        sources=f"-I ../src {file}_test.c ../src/{file}.c"
+        if options.arduino
+        else f"{file}_test.c {file}.c",
         name=module.name,
         macro=module.name.upper(),
         real=options.real,
@@ -79,7 +82,8 @@ def _c(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
             for x in vectors.expected
         ],
     )
-    return {f"{file}_test.c": text}
+    # a library of Arduino's compiles nothing of this folder by itself
+    return {f"{file}/extras/{file}_test.c" if options.arduino else f"{file}_test.c": text}
 
 
 def _python(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:

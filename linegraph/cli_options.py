@@ -159,7 +159,7 @@ EMIT: tuple[Option, ...] = (
         "languages",
         type=click.Choice(LANGUAGES),
         multiple=True,
-        help="Language to write; repeatable.  [default: all]",
+        help="Language to write; repeatable.  [default: all; with --arduino C alone]",
     ),
     click.option(
         "--trig",

@@ -50,7 +50,7 @@ def emit(
         model: the system.
         out: the folder, made if need be.
         name: prefix of functions and files; default the model's name, cleaned to an identifier.
-        languages: some of `codegen.LANGUAGES`; default all.
+        languages: some of `codegen.LANGUAGES`; default all, for Arduino C alone.
         folded: write the parameters' values into the code instead of keeping them symbolic.
         functions: further functions to write, of `programs.ON_REQUEST`.
         only: write nothing but these of `programs.PROGRAMS` and what they call.
@@ -108,13 +108,14 @@ def render(
     import codegen
 
     tell = progress or (lambda text: None)
-    chosen = list(dict.fromkeys(_several(languages or codegen.LANGUAGES)))
+    choices = codegen.options_of(options)
+    default = ("c",) if choices.arduino else codegen.LANGUAGES
+    chosen = list(dict.fromkeys(_several(languages or default)))
     frames, functions, only = _several(frames), _several(functions), _several(only)
     for language in chosen:
         if language not in codegen.LANGUAGES:
             known = ", ".join(codegen.LANGUAGES)
             raise ModelError(f'language "{language}"', f"is not known; known: {known}")
-    choices = codegen.options_of(options)
     if "c" not in chosen and choices != codegen.Options():
         given = ", ".join(
             name for name, x in options.items() if x not in (None, False, "libm", "double")

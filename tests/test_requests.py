@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -81,3 +82,15 @@ def test_nothing_is_replaced_where_one_file_cannot_be(tmp_path: Path) -> None:
         write_all(tmp_path, {"a": "new", "c/d": "new"})
     assert (tmp_path / "a").read_text() == "old"
     assert {path.name for path in tmp_path.iterdir()} == {"a", "b", "c"}
+
+
+def test_a_library_of_arduino_has_its_test_inside(tmp_path: Path) -> None:
+    files = render(lg.read(FURUTA), tests=True, arduino=True, real="float")
+    assert {name.split("/")[0] for name in files} == {"furuta"}
+    write_all(tmp_path, files)
+    (command,) = re.findall(r"(cc -std=c99 .*) && ", files["furuta/extras/furuta_test.c"])
+    folder = tmp_path / "furuta" / "extras"
+    subprocess.run(command.split(), cwd=folder, check=True)
+    assert (
+        subprocess.run([folder / "furuta_test"], capture_output=True, check=False).returncode == 0
+    )
