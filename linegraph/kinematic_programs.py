@@ -254,8 +254,25 @@ def kinematics(f: Functions) -> tuple[Program | Routine, ...]:
         _result(f, f"{frame}_{result}" if frame else result, result, names.get(frame, ""), entries)
         for (result, frame), entries in found.items()
     )
+    _require_apart(made, found)
     about = "Kinematics of frames and of the whole at once, sharing work."
     return (f.program("kinematics", about, ("q",), made),)
+
+
+def _require_apart(made: Sequence[Result], keys: Iterable[Key]) -> None:
+    """Refuse a frame whose results are called as those of the whole, as of a frame named com.
+
+    Raises:
+        ModelError: two results have one name.
+    """
+    times = Counter(result.name for result in made)
+    for result, (_, frame) in zip(made, keys, strict=True):
+        if times[result.name] > 1:
+            problem = (
+                f"its {result.name} and that of the whole would have one name in kinematics; rename it, or "
+                "ask with --only for the functions themselves"
+            )
+            raise ModelError(f'frame "{frame or result.name}"', problem)
 
 
 def require_mass(f: Functions) -> None:

@@ -414,3 +414,13 @@ def test_any_name_is_a_frame(tmp_path: Path) -> None:
     module = load(files, "m", tmp_path)
     for stem in ("x_7_7", "class", "x_2nd", "platform", "x" * 80):
         assert getattr(module, f"frame_{stem}_pose")(np.zeros(5))[0].shape == (3,)
+
+
+def test_a_frame_called_as_results_of_the_whole_is_refused_by_name() -> None:
+    model = wrist()
+    model.body("com")
+    model.fixed("weld", between=("link5.tip", "com"))
+    wanted = ("center_of_mass", "center_of_mass_velocity")
+    with pytest.raises(ModelError, match=r'frame "com": its com_velocity .* one name'):
+        render(model, frames=("com",), functions=wanted)
+    assert render(model, frames=("com",), only=("frames", *wanted))
