@@ -100,11 +100,11 @@ def test_cmake_builds_installs_and_finds(shared: str, tmp_path: Path) -> None:
     assert float(values.pop()) > 0
 
 
-@pytest.mark.parametrize("system", ["Linux", "Generic"])
-def test_cmake_makes_no_position_independent_code_without_a_system(
-    system: str, tmp_path: Path
+@pytest.mark.parametrize("where", ["here", "here, unwanted", "on bare metal"])
+def test_cmake_makes_position_independent_code_where_it_is_of_use(
+    where: str, tmp_path: Path
 ) -> None:
-    bare_metal = system == "Generic"
+    bare_metal = where == "on bare metal"
     lacking = targets.missing("cmake", "make", "arm-none-eabi-gcc" if bare_metal else "cc")
     if lacking:
         pytest.skip(lacking)
@@ -113,10 +113,12 @@ def test_cmake_makes_no_position_independent_code_without_a_system(
     if bare_metal:
         command += ["-DCMAKE_SYSTEM_NAME=Generic", "-DCMAKE_C_COMPILER=arm-none-eabi-gcc"]
         command += ["-DCMAKE_TRY_COMPILE_TARGET_TYPE=STATIC_LIBRARY"]
+    if where == "here, unwanted":
+        command.append("-DCMAKE_POSITION_INDEPENDENT_CODE=OFF")
     targets.run(command, tmp_path)
     said = (tmp_path / "build" / "compile_commands.json").read_text()
     assert "arm.c" in said
-    assert ("-fPIC" in said) != bare_metal
+    assert ("-fPIC" in said) == (where == "here")
 
 
 @pytest.mark.parametrize(
