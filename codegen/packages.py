@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
-from codegen import declare, failures, layout, prose, templates
-from linegraph.errors import ModelError
+from codegen import declare, failures, layout, naming, prose, reserved, templates
+from linegraph.errors import ModelError, NameRefused
+from linegraph.program import PREPARED_SUFFIX
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -39,8 +41,14 @@ _TARGETS = frozenset(
 )
 """What targets of CMake cannot be called, and the mathematics library."""
 
+_KEYWORD = re.compile(r"[A-Z_]+")
+"""How keywords of CMake's commands are written: EXPORT, TARGETS, FILE, STATIC and many more."""
+
 _SHOWN = ("forward_dynamics", "equations", "mass_matrix")
 """What the example of Arduino's calls, the first that there is."""
+
+VERSION = "1.0.0"
+"""Of what is emitted: the same model gives the same files, which have no history."""
 
 LONGEST = 63
 """Names of Arduino's libraries are at most this long."""
@@ -57,17 +65,24 @@ def packed(module: Module, file: str, files: Mapping[str, str], options: Options
 
     Raises:
         ModelError: the name cannot be that of a target or library.
+        NameRefused: the name of a parameter is none where Arduino.h is included.
     """
     if options.cmake:
-        if file in _TARGETS:
-            raise ModelError(f'name "{file}"', "is a target of CMake's own; choose another name")
-        return {
-            **files,
-            "CMakeLists.txt": templates.fill("c/packages/CMakeLists.txt.jinja", file=file),
-        }
+        return {**files, "CMakeLists.txt": _project(file)}
     if options.arduino:
         return _library(module, file, files, options)
     return dict(files)
+
+
+def _project(file: str) -> str:
+    if file in _TARGETS:
+        raise ModelError(f'name "{file}"', "is a target of CMake's own; choose another name")
+    if _KEYWORD.fullmatch(file):
+        problem = "has capitals alone, as keywords of CMake's have; choose one with small letters"
+        raise ModelError(f'name "{file}"', problem)
+    return templates.fill(
+        "c/packages/CMakeLists.txt.jinja", file=file, macro=file.upper(), version=VERSION
+    )
 
 
 def _library(
@@ -76,12 +91,24 @@ def _library(
     if len(file) > LONGEST:
         problem = f"is longer than {LONGEST} characters, the most a library of Arduino's has"
         raise ModelError(f'name "{file}"', f"{problem}; choose another name")
+    if file.casefold() in reserved.CORES:
+        problem = "would hide a header of Arduino's, capitals or not; choose another name"
+        raise ModelError(f'name "{file}"', problem)
+    for parameter in module.parameters:
+        if reserved.BOARDS.fullmatch(parameter.name):
+            what = f"parameter {naming.quote(parameter.name)} cannot be used with Arduino"
+            instead = f"rename it; x_{parameter.name} would do"
+            raise NameRefused(f"{what}: Arduino.h has macros of such names; {instead}")
     about = " ".join(declare.comment(text) for text in module.about[:1])
     constants = [f"{module.name.upper()}_{x}" for x in layout.counts(module)]
     constants += [name for name, _ in failures.constants(module).values()]
     texts = {
         "library.properties": templates.fill(
-            "c/packages/library.properties.jinja", file=file, about=about, author="linegraph"
+            "c/packages/library.properties.jinja",
+            file=file,
+            about=about,
+            author="linegraph",
+            version=VERSION,
         ),
         "keywords.txt": templates.fill(
             "c/packages/keywords.txt.jinja",
@@ -97,10 +124,7 @@ def _library(
 
 def _example(module: Module, file: str, real: str) -> str:
     """A sketch that calls one function."""
-    programs = {program.name: program for program in module.programs}
-    program: Program | Routine = next(
-        (programs[name] for name in _SHOWN if name in programs), module.programs[0]
-    )
+    program = _shown(module)
     name = f"{module.name}_{program.name}"
     fails = program.status or bool(layout.statuses(module)[program.name])
     macro = f"{module.name.upper()}_"
@@ -124,7 +148,7 @@ def _example(module: Module, file: str, real: str) -> str:
         declarations.append(f"static {real} {result.name}[{size}];")
         outputs.append((result.name, size))
         given.append(result.name)
-    call = f"{name}({', '.join(given)});"
+    call = f"called({', '.join(given)});"
     return templates.fill(
         "c/packages/example.ino.jinja",
         file=file,
@@ -138,6 +162,22 @@ def _example(module: Module, file: str, real: str) -> str:
     )
 
 
+def _shown(module: Module) -> Program | Routine:
+    """What the sketch calls: of `_SHOWN`, else the first that computes from the parameters themselves."""
+    programs = {program.name: program for program in module.programs}
+    own = [x for x in programs if x != "prepare" and not x.endswith(PREPARED_SUFFIX)]
+    return programs[next(name for name in (*_SHOWN, *own, *programs) if name in programs)]
+
+
 def _rest(module: Module) -> list[str]:
-    """Coordinates to begin with: zero, and quaternions that turn nothing."""
-    return ["1" if x.name.endswith("qw") else "0" for x in module.positions]
+    """Coordinates to begin with: zero, and quaternions that turn nothing.
+
+    A quaternion is four numbers without unit, one after the other, that are called alike up to x, y, z, w.
+    """
+    begin = ["0"] * len(module.positions)
+    for k in range(3, len(begin)):
+        four = module.positions[k - 3 : k + 1]
+        stem = four[0].name.removesuffix("qx")
+        if [(x.name, x.unit) for x in four] == [(f"{stem}q{c}", "1") for c in "xyzw"]:
+            begin[k] = "1"
+    return begin

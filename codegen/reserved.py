@@ -62,6 +62,32 @@ _MODULES = """
 FILES = _words(_HEADERS, _MODULES)
 """Headers of C and modules that NumPy imports: a file of that name would be taken for them."""
 
+_BOARDS = """
+    AS2 F_CPU PI PM SE SP XH XL YH YL ZH ZL
+"""
+BOARDS = re.compile(
+    r"[A-Z]{3}[A-Z0-9_]*|[A-Z]{2}_[A-Z0-9_]*|[A-Z]{2}\d[A-Z][A-Z0-9]*|A\d|A1[0-5]|B[01]{1,8}"
+    r"|(P[A-L]|CS|DD|DT|FE|SM|TC)\d+|U2X\d|E2[A-Z]+|(PRI|SCN)[dioux]\w+|\w+_vect(_num)?"
+    rf"|{'|'.join(_BOARDS.split())}"
+)
+"""What Arduino.h replaces on some board, or may: constants, pins, registers and their bits.
+
+There are thousands, which differ from board to board. Nearly all have three capitals or more and no small
+letter, so that whatever is written like this is none of ours there.
+"""
+
+_CORES = """
+    Arduino ArduinoGraphics binary Bridge CAN CDC Client EEPROM Esplora Ethernet Firmata HardwareSerial HID
+    IPAddress Keyboard LiquidCrystal Mouse MSC pgmspace PluggableUSB Print Printable SD Server Servo
+    SoftwareSerial SPI Stepper Stream Temboo TFT UART Udp USB USBAPI USBCore USBDesc WCharacter WiFi Wire
+    wiring_private WMath WString pins_arduino
+"""
+CORES = frozenset(word.casefold() for word in _CORES.split())
+"""Headers of Arduino's cores and of the libraries that come with them, in small letters.
+
+On systems that take capitals for small letters a file ``servo.h`` is found as ``Servo.h``, too.
+"""
+
 HEADS = _words("H HIGH1 HIGH2 HIGH4 LANES LOW1 LOW2 LOW4 PART RESTRICT SWAP")
 """What macros of the emitted C files are called, after the model's name."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import subprocess
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import codegen_samples as samples
@@ -12,8 +13,10 @@ import targets
 
 import codegen
 from codegen import Options
-from linegraph.errors import ModelError
+from linegraph.emission import module_for
+from linegraph.errors import ModelError, NameRefused
 from linegraph.files import write_all
+from linegraph.program import Quantity
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -33,7 +36,7 @@ int main(void)
 """
 
 BY_FOLDER = "add_subdirectory(model)"
-BY_PACKAGE = "find_package(model REQUIRED)"
+BY_PACKAGE = "find_package(model 1.0 REQUIRED)"
 
 STUB = """
 #include <math.h>
@@ -86,20 +89,50 @@ def test_cmake_builds_installs_and_finds(shared: str, tmp_path: Path) -> None:
             (tmp_path / "user" / "model").rename(tmp_path / "gone")
         project(tmp_path / "user", how)
         found = f"-DCMAKE_PREFIX_PATH={tmp_path / 'prefix'}"
-        targets.run(["cmake", "-S", "user", "-B", build, found], tmp_path)
+        asked = f"-DMODEL_INSTALL={shared}"
+        targets.run(["cmake", "-S", "user", "-B", build, found, asked], tmp_path)
+        if how == BY_FOLDER:
+            rules = (tmp_path / build / "model" / "cmake_install.cmake").read_text()
+            assert ("model.h" in rules) == (shared == "ON")
         targets.run(["cmake", "--build", build], tmp_path)
         values.add(targets.run([f"./{build}/user"], tmp_path))
     assert len(values) == 1
     assert float(values.pop()) > 0
 
 
-@pytest.mark.parametrize("name", ["test", "install", "m"])
-def test_a_target_of_cmake_is_refused(name: str) -> None:
-    from dataclasses import replace
+@pytest.mark.parametrize("where", ["here", "here, unwanted", "on bare metal"])
+def test_cmake_makes_position_independent_code_where_it_is_of_use(
+    where: str, tmp_path: Path
+) -> None:
+    bare_metal = where == "on bare metal"
+    lacking = targets.missing("cmake", "make", "arm-none-eabi-gcc" if bare_metal else "cc")
+    if lacking:
+        pytest.skip(lacking)
+    write_all(tmp_path, codegen.render(samples.arm(), "c", Options(cmake=True)))
+    command = ["cmake", "-S", ".", "-B", "build", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON"]
+    if bare_metal:
+        command += ["-DCMAKE_SYSTEM_NAME=Generic", "-DCMAKE_C_COMPILER=arm-none-eabi-gcc"]
+        command += ["-DCMAKE_TRY_COMPILE_TARGET_TYPE=STATIC_LIBRARY"]
+    if where == "here, unwanted":
+        command.append("-DCMAKE_POSITION_INDEPENDENT_CODE=OFF")
+    targets.run(command, tmp_path)
+    said = (tmp_path / "build" / "compile_commands.json").read_text()
+    assert "arm.c" in said
+    assert ("-fPIC" in said) == (where == "here")
 
+
+@pytest.mark.parametrize(
+    ("name", "problem"),
+    [
+        *((name, "target of CMake's own") for name in ("test", "install", "m", "PACKAGE")),
+        *((name, "capitals alone") for name in ("EXPORT", "TARGETS", "FILE", "ALIAS", "STATIC")),
+    ],
+)
+def test_a_word_of_cmake_is_refused(name: str, problem: str) -> None:
     module = replace(samples.arm(), name=name)
-    with pytest.raises(ModelError, match="target of CMake's own"):
+    with pytest.raises(ModelError, match=f'name "{name}": .*{problem}'):
         codegen.render(module, "c", Options(cmake=True))
+    assert f"{name}.h" in codegen.render(module, "c")
 
 
 @pytest.mark.parametrize(
@@ -163,10 +196,94 @@ def test_arduino_example_compiles_and_runs(name: str, real: str, tmp_path: Path)
     assert "status" in done.stdout or all(re.fullmatch(r"[-\d. ]+", row) for row in rows)
 
 
+def test_the_sketch_times_a_call_that_is_made(tmp_path: Path) -> None:
+    """With optimisation at link time, too, the function is there as it is, for any arguments."""
+    lacking = targets.missing("gcc", "g++", "nm")
+    if lacking:
+        pytest.skip(lacking)
+    module = targets.module("double_pendulum")
+    write_all(tmp_path, codegen.render(module, "c", Options(arduino=True)))
+    sketch = (tmp_path / "model" / "examples" / "model" / "model.ino").read_text()
+    main = "int main() { setup(); for (;;) { loop(); } }"
+    (tmp_path / "sketch.cpp").write_text(f"{STUB}\n{sketch}\n{main}\n")
+    flags = ["-O3", "-flto", "-fwhole-program", "-I", "model/src"]
+    targets.run(["gcc", *flags[:2], "-c", "model/src/model.c", "-o", "model.o"], tmp_path)
+    targets.run(["g++", *flags, "sketch.cpp", "model.o", "-lm", "-o", "sketch"], tmp_path)
+    symbols = targets.run(["nm", "sketch"], tmp_path).split()
+    assert "model_forward_dynamics" in symbols
+
+
+def test_the_sketch_calls_what_is_asked_for() -> None:
+    model = targets.everything()["double_pendulum"]()
+    module = module_for(model, "model", only=("bias",))
+    assert [x.name for x in module.programs] == ["prepare", "bias", "bias_prepared"]
+    files = codegen.render(module, "c", Options(arduino=True))
+    assert "called = &model_bias;" in files["model/examples/model/model.ino"]
+
+
+def test_the_sketch_begins_at_rest() -> None:
+    """Only the last number of a quaternion is 1, whatever joints are called."""
+    names = ("elbow_qw", "ball_qx", "ball_qy", "ball_qz", "ball_qw", "qw")
+    units = ("rad", "1", "1", "1", "1", "rad")
+    positions = tuple(map(Quantity, names, units))
+    programs = targets.module("double_pendulum").programs
+    called = next(x for x in programs if x.name == "mass_matrix")
+    arguments = tuple(replace(x, size=6) if x.name == "q" else x for x in called.arguments)
+    module = replace(
+        targets.module("double_pendulum"),
+        positions=positions,
+        programs=(replace(called, arguments=arguments, handed="", calls=()),),
+    )
+    files = codegen.render(module, "c", Options(arduino=True))
+    assert "q[MODEL_NQ] = {0, 0, 0, 0, 1, 0};" in files["model/examples/model/model.ino"]
+
+
+MACROS = """
+    B0 B1 B01 B11111111 PI TWO_PI HALF_PI DEG_TO_RAD RAD_TO_DEG EULER HIGH LOW INPUT OUTPUT
+    INPUT_PULLUP DEFAULT INTERNAL EXTERNAL A0 A7 A15 LSBFIRST MSBFIRST CHANGE FALLING RISING SERIAL
+    DISPLAY NOT_A_PIN SP SREG PORTB DDRB PB5 ADC TCNT1 OCR0A UDR0 CS00 F_CPU LED_BUILTIN DT1AH0
+"""
+
+
+def test_macros_of_arduino_are_refused() -> None:
+    def made(name: str, options: Options) -> dict[str, str]:
+        module = replace(samples.constant(), parameters=(Quantity(name, "", "", 1.0),))
+        return codegen.render(module, "c", options)
+
+    for name in MACROS.split():
+        with pytest.raises(NameRefused, match=rf"parameter '{name}' .*rename it; x_{name} would"):
+            made(name, Options(arduino=True))
+        assert made(name, Options())
+        assert made(f"x_{name}", Options(arduino=True))
+    for name in ("B", "A", "J", "M1", "R12", "C2", "RA", "KT", "Ixx", "A16", "B2", "k_P", "Low"):
+        assert made(name, Options(arduino=True))
+
+
+@pytest.mark.parametrize("name", ["Arduino", "Servo", "Wire", "SPI", "EEPROM", "servo", "Stream"])
+def test_headers_of_arduino_are_not_hidden(name: str) -> None:
+    module = replace(samples.arm(), name=name)
+    with pytest.raises(ModelError, match=f'name "{name}": would hide a header of Arduino'):
+        codegen.render(module, "c", Options(arduino=True))
+
+
+@pytest.mark.parametrize(("real", "size", "right"), [("double", 4, False), ("float", 4, True)])
+def test_doubles_of_four_bytes_are_refused(
+    real: str, size: int, right: bool, tmp_path: Path
+) -> None:
+    lacking = targets.missing("gcc")
+    if lacking:
+        pytest.skip(lacking)
+    write_all(tmp_path, codegen.render(samples.arm(), "c", Options(real=real)))
+    flags = ["-U__SIZEOF_DOUBLE__", f"-D__SIZEOF_DOUBLE__={size}", "-w", "-fsyntax-only"]
+    done = subprocess.run(
+        ["gcc", *flags, "arm.c"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode == 0) == right, done.stderr
+    assert right or "double has 4 bytes here: emit with --real float" in done.stderr
+
+
 def test_one_layout_at_a_time() -> None:
     with pytest.raises(ModelError, match="another folder"):
         Options(cmake=True, arduino=True)
-    from dataclasses import replace
-
     with pytest.raises(ModelError, match="63 characters"):
         codegen.render(replace(samples.arm(), name="a" * 64), "c", Options(arduino=True))
