@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from codegen import declare, layout, prose, straight
-from codegen.straight import FUNCTIONS, SHARED, Kind
+from codegen.straight import SHARED, Kind
 from linegraph.functions import ARITY
 from linegraph.program import PREPARED_SUFFIX, Program
 
@@ -88,7 +88,7 @@ def elementwise(module: Module, wide: Sequence[Definition]) -> list[tuple[str, s
     """The functions, other than sine and cosine, that are called lane by lane: name, C's name, arity."""
     text = "\n".join(line for _, body in wide for line in body)
     return [
-        (name, FUNCTIONS[name].rstrip("("), arity)
+        (name, straight.function(module, name), arity)
         for name, arity in ARITY.items()
         if f"{module.name}_lanes_{name}(" in text
     ]

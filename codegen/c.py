@@ -115,7 +115,7 @@ def _needs(
     text = "\n".join(line for _, body in (*functions, *wide) for line in body)
     heads = "\n".join(head for head, _ in (*functions, *wide))
     marks = {
-        "sign": "sign_of",
+        "sign": f"{name}_sign_of",
         "one": f"{name}_sincos",
         "all": f"{name}_all_sincos",
         "lanes_sincos": f"{name}_lanes_sincos",

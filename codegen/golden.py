@@ -135,7 +135,7 @@ def _results(module: Module, expected: Expected) -> list[str]:
 
 
 def _arguments_in_c(module: Module, expected: Expected) -> list[str]:
-    single = {"p": f"&{module.name}_default_parameters", "t": "(real)given_t[state]"}
+    single = {"p": f"&{module.name}_default_parameters", "t": f"(real){module.name}_given_t[state]"}
     arguments = [single.get(key) or f"in_{key}" for key in _keys(module, expected)]
     return [*arguments, *(f"out_{result}" for result in _results(module, expected))]
 

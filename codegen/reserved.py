@@ -57,7 +57,7 @@ _MODULES = """
     opcode operator os pathlib pickle platform posixpath pprint queue random re reprlib secrets
     selectors shutil site socket stat struct subprocess sys sysconfig tempfile textwrap
     threading token tokenize traceback types typing unicodedata unittest urllib uuid warnings
-    weakref zipfile zipimport
+    weakref zipfile zipimport conftest pytest _pytest
 """
 FILES = _words(_HEADERS, _MODULES)
 """Headers of C and modules that NumPy imports: a file of that name would be taken for them."""
@@ -88,7 +88,9 @@ CORES = frozenset(word.casefold() for word in _CORES.split())
 On systems that take capitals for small letters a file ``servo.h`` is found as ``Servo.h``, too.
 """
 
-HEADS = _words("H HIGH1 HIGH2 HIGH4 LANES LOW1 LOW2 LOW4 PART RESTRICT SWAP")
+HEADS = _words(
+    "H HIGH1 HIGH2 HIGH4 LANES LOW1 LOW2 LOW4 PART RESTRICT SWAP", "TEST_NO_STDIO TEST_REAL"
+)
 """What macros of the emitted C files are called, after the model's name."""
 
 CLASS = _words("replace self")

@@ -73,6 +73,7 @@ def body(
         f"{language}/routines/{routine.algorithm}.jinja",
         counts={"NC": 0, "NP": 0, "NI": 0, **counts},
         results=", ".join(result.name for result in routine.results),
+        name=module.name,
         macro=module.name.upper(),
         ok=f"{module.name.upper()}_{failures.OK}",
         status=_constants(module, routine),

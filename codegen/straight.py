@@ -29,8 +29,7 @@ if TYPE_CHECKING:
 Definition = tuple[str, list[str]]
 """The head of a function and the lines between its braces."""
 
-RENAMED = {"abs": "fabs", "min": "fmin", "max": "fmax", "sign": "sign_of"}
-FUNCTIONS = {name: f"{RENAMED.get(name, name)}(" for name in ARITY}
+RENAMED = {"abs": "fabs", "min": "fmin", "max": "fmax"}
 SHARED = ("p", "c", "t")
 """Arguments that all states of a batch have in common."""
 
@@ -50,6 +49,11 @@ class Kind:
     wide: bool = False
     inline: bool = False
     real: str = "double"
+
+
+def function(module: Module, name: str) -> str:
+    """What C calls a function of `ARITY`: that of <math.h>, or the file's own, after the module."""
+    return f"{module.name}_sign_of" if name == "sign" else RENAMED.get(name, name)
 
 
 def define(
@@ -357,7 +361,7 @@ def _notation(module: Module, kind: Kind) -> Notation:
         before="    const double ",
         after=";",
         member="p->",
-        functions=FUNCTIONS,
+        functions={name: f"{function(module, name)}(" for name in ARITY},
         comment=lambda label: f"    /* {declare.comment(label)} */",
         check=check,
         bracketed=True,

@@ -184,7 +184,7 @@ def test_statuses_are_returned_by_name(name: str) -> None:
     assert not re.search(r"return \d", outside)
     enumerated = dict(re.findall(r"^    (MODEL_\w+) = (\d+)", files["model.h"], re.MULTILINE))
     assert enumerated["MODEL_OK"] == "0"
-    returned = set(re.findall(r"\b(?:return|status =) (MODEL_\w+);", code))
+    returned = set(re.findall(r"\b(?:return|status =) (MODEL_\w+);", outside))
     assert returned <= set(enumerated)
     assert set(enumerated) - returned == set()
     for constant, number in enumerated.items():

@@ -16,6 +16,7 @@ from linegraph.golden.bodies import NOISE, Bodies
 from linegraph.golden.constraints import Constraints
 from linegraph.golden.derivatives import Derivatives
 from linegraph.golden.kinematics import Kinematics
+from linegraph.golden.parameters import Parameters
 from linegraph.golden.walk import Walk
 
 if TYPE_CHECKING:
@@ -108,6 +109,11 @@ class Point:
     def kinematics(self) -> Kinematics:
         """Frames, and the whole."""
         return Kinematics(self.walk, self.bodies)
+
+    @cached_property
+    def parameters(self) -> Parameters:
+        """What identification asks for."""
+        return Parameters(self.walk, self.bodies, self.walk.np.array(self.a), self.inverse)
 
     @cached_property
     def force(self) -> Valued:

@@ -182,6 +182,18 @@ def _Agdot_v(point: Point) -> Valued:
     return point.kinematics.momentum_rate
 
 
+def _Y(point: Point) -> Valued:
+    return point.parameters.regressor
+
+
+def _pi(point: Point) -> Valued:
+    return point.parameters.values
+
+
+def _rest_of_tau(point: Point) -> Valued:
+    return point.parameters.rest
+
+
 REFERENCES: dict[str, Reference] = {
     "mass_matrix": Reference(NEWTON_EULER, {"M": _M}),
     "bias": Reference(NEWTON_EULER, {"h": _h}),
@@ -224,6 +236,14 @@ REFERENCES: dict[str, Reference] = {
     "momentum": Reference(MOMENTA, {"hg": _hg}),
     "centroidal_momentum_matrix": Reference(MOMENTA, {"Ag": _Ag}),
     "centroidal_momentum_bias": Reference(NEWTON_EULER, {"Agdot_v": _Agdot_v}),
+    "regressor": Reference(
+        "Newton's and Euler's equations of bodies with one moment of 1 and no other; what is left of M a + h",
+        {"Y": _Y, "rest": _rest_of_tau},
+    ),
+    "inertial_parameters": Reference(
+        "moments of the bodies as given, moved and summed; what dampers and frictions say",
+        {"pi": _pi},
+    ),
 }
 """What is compared, and with what: a new function joins by a line here."""
 
@@ -231,9 +251,15 @@ WHOLE = ("com", "com_velocity", "Jcom", "hg", "Ag", "Agdot_v")
 """Results that `kinematics` has of the whole, as their own functions do."""
 
 
-def references(frames: Iterable[NamedFrame] = ()) -> dict[str, Reference]:
-    """The register, with the functions of some frames."""
-    found = dict(REFERENCES)
+OF_BODIES = ("regressor", "inertial_parameters")
+"""Of models without networks: what rotors of motors are worth to joints is known by no other route."""
+
+
+def references(
+    frames: Iterable[NamedFrame] = (), *, networks: bool = False
+) -> dict[str, Reference]:
+    """The register, with the functions of some frames, of a model with or without networks."""
+    found = {x: y for x, y in REFERENCES.items() if not (networks and x in OF_BODIES)}
     together = {
         name: made for reference in REFERENCES.values() for name, made in reference.results.items()
     }

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from linegraph.assembly import consistent
 from linegraph.errors import ModelError
 from linegraph.golden.point import Kept, Point
-from linegraph.golden.references import Reference, references
+from linegraph.golden.references import OF_BODIES, Reference, references
 from linegraph.program import PREPARED_SUFFIX, Routine
 from linegraph.vectors import Expected, Values, Vectors
 
@@ -54,6 +54,7 @@ UNTESTED = {
     "prepare": "the functions that take its constants are called by those that are compared",
     "algebraic_loop": "called by functions that are compared",
     "loop_equations": "called by functions that are compared",
+    **dict.fromkeys(OF_BODIES, "what networks add to it is known by no independent route"),
     "constrained_slopes": "called by functions that are compared",
 }
 """Why a function is not called by itself; of all others, that no independent route is known."""
@@ -94,7 +95,7 @@ def vectors(
         >>> vectors(derivation, module).values["M"].rows[0]
         (0.5,)
     """
-    register = references(frames)
+    register = references(frames, networks=derivation.formulation.network is not None)
     chosen = [p for p in module.programs if _known(register, p)]
     if not chosen:
         raise ModelError("tests", "nothing that is emitted is known by an independent route")

@@ -161,6 +161,14 @@ class Walk:
             for x, dx, change in zip(self.q, rates, second, strict=True)
         )
 
+    def along(self, joint: str) -> tuple[Array, float]:
+        """The rate of a joint's one coordinate, by direction, and its second derivative at v̇ = 0."""
+        place = self.tree.layout.own(joint)
+        assert place is not None
+        (at,), _ = coordinates(place, self._coordinates, (0.0,) * len(self.v))
+        _, rate, second = self.parts([at])
+        return rate[0], float(second[0, -1])
+
     def given(self, x: Jet) -> Jet:
         """What moves as prescribed: not at all where one velocity is looked at alone."""
         alone = self.np.zeros(len(self.v) + 1, self.number)
