@@ -14,7 +14,7 @@ from __future__ import annotations
 import random
 from typing import TYPE_CHECKING, NamedTuple
 
-from linegraph import closed_programs
+from linegraph import closed_programs, pivots
 from linegraph.algebra import Floats
 from linegraph.errors import ModelError
 from linegraph.expression import Node
@@ -88,7 +88,6 @@ class _Dynamics(NamedTuple):
         names: the velocities.
         mass, bias: M and h.
         outward: the velocities from the root to the leaves.
-        stored: from which on velocities are states of networks, whose share of M may be negative.
         calls: what computes M and h, and all velocities for those of these coordinates.
         spread: T of v = T w where these w are not all of v, and what T w leaves of v̇.
     """
@@ -97,7 +96,6 @@ class _Dynamics(NamedTuple):
     mass: list[list[Scalar]]
     bias: list[Scalar]
     outward: Sequence[int]
-    stored: int
     calls: tuple[Call, ...]
     spread: tuple[list[list[Scalar]], list[Scalar]] | None = None
 
@@ -130,7 +128,11 @@ def _operational(f: Functions, frame: NamedFrame, function: str, dynamics: _Dyna
         Result("mu", (rows,), tuple(mu), "the force on it under which its velocity stays"),
         Result("Jbar", (len(f.v), rows), _flat(bar), BAR, ("NV", "")),
     )
-    checks = (*_checks_of_mass(f, factors, dynamics), *_checks_of_frame(f, frame, known, inner))
+    bounds = [pivots.bound(x, dynamics.mass[i][i]) for i, x in enumerate(factors.pivots)]
+    checks = (
+        *pivots.checks(f, factors.pivots, bounds, dynamics.names),
+        *_checks_of_frame(f, frame, known, inner),
+    )
     given = [x for call in dynamics.calls for x in call.arguments if x not in f.head]
     name = f"frame_{frame.identifier}_{function}"
     about = _about(frame, rows, closed=f.tree.closed)
@@ -184,7 +186,7 @@ def _open(f: Functions, function: str) -> _Dynamics:
     ]
     names = [quantity.name for quantity in f.tree.velocities]
     bias = _vector(f, "h", size)
-    return _Dynamics(names, mass, bias, f.tree.outward, f.tree.layout.mechanical, (call,))
+    return _Dynamics(names, mass, bias, f.tree.outward, (call,))
 
 
 def _closed(f: Functions, function: str) -> _Dynamics:
@@ -213,26 +215,11 @@ def _closed(f: Functions, function: str) -> _Dynamics:
     )
     spread = _matrix(f, "T", n, k), _vector(f, "rest", n)
     mass, bias = _matrix(f, "Mr", k, k), _vector(f, "hr", k)
-    return _Dynamics(names, mass, bias, range(k), k, calls, spread)
+    return _Dynamics(names, mass, bias, range(k), calls, spread)
 
 
 def _refused(f: Functions, function: str, problem: str) -> ModelError:
     return ModelError(f'model "{f.model.name}"', f"{problem}: {function} cannot be emitted for it")
-
-
-def _checks_of_mass(f: Functions, factors: Factors, dynamics: _Dynamics) -> list[Check]:
-    checks = []
-    for i, pivot in enumerate(factors.pivots):
-        # what a network stores may be negative; inertia may not
-        stored = i >= dynamics.stored
-        size = f.dag.function("abs", pivot) if stored else pivot
-        entry = dynamics.mass[i][i]
-        if isinstance(size, Node):
-            bound = 0 if stored or pivot is entry else entry
-            about = f"the mass matrix is singular at {dynamics.names[i]}"
-            name = f"SINGULAR_AT_{dynamics.names[i]}"
-            checks.append(Check(size, bound, i + 1, about, name, None if bound == 0 else SINGULAR))
-    return checks
 
 
 def _checks_of_frame(
@@ -241,7 +228,7 @@ def _checks_of_frame(
     checks = []
     for i, pivot in enumerate(known.pivots):
         if isinstance(pivot, Node):
-            bound = 0 if pivot is inner[i][i] else inner[i][i]
+            bound = pivots.bound(pivot, inner[i][i])
             about = f'the frame "{frame.name}" cannot move {DIRECTIONS[i]} by itself here'
             name = f"IMMOBILE_{frame.identifier}_{DIRECTIONS[i].replace(' ', '_')}"
             fraction = None if bound == 0 else SINGULAR

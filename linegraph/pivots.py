@@ -21,9 +21,18 @@ def bound(pivot: Scalar, entry: Scalar) -> Scalar:
     return 0 if pivot is entry else entry
 
 
-def checks(f: Functions, pivots: Sequence[Scalar], bounds: Sequence[Scalar]) -> tuple[Check, ...]:
-    """One check for each velocity whose pivot is not a number; status k + 1 is the velocity k's."""
+def checks(
+    f: Functions,
+    pivots: Sequence[Scalar],
+    bounds: Sequence[Scalar],
+    names: Sequence[str] = (),
+) -> tuple[Check, ...]:
+    """One check for each velocity whose pivot is not a number; status k + 1 is the velocity k's.
+
+    `names` are those of the velocities where M is not of all of them.
+    """
     first = f.tree.layout.mechanical
+    names = names or [quantity.name for quantity in f.tree.velocities]
     found = []
     asked: set[tuple[int, Operand]] = set()
     for i, (pivot, least) in enumerate(zip(pivots, bounds, strict=True)):
@@ -32,7 +41,7 @@ def checks(f: Functions, pivots: Sequence[Scalar], bounds: Sequence[Scalar]) -> 
         limit = least if i < first else 0
         if isinstance(size, Node) and (size.index, limit) not in asked:
             asked.add((size.index, limit))
-            velocity = f.tree.velocities[i].name
+            velocity = names[i]
             about = f"the mass matrix is singular at {velocity}"
             fraction = SINGULAR if isinstance(limit, Node) or limit else None
             found.append(Check(size, limit, i + 1, about, f"SINGULAR_AT_{velocity}", fraction))

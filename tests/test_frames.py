@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from emitted import load
+from test_kinematics import operational
 from test_pinocchio import readable
 
 from codegen import naming
@@ -114,16 +115,6 @@ class Peer:
             "Ag": data.Ag @ self.G,
             "Agdot_v": data.dAg @ self.v,
         }
-
-
-def operational(
-    J: np.ndarray, rate: np.ndarray, M: np.ndarray, h: np.ndarray
-) -> tuple[tuple[np.ndarray, ...], float]:
-    """Lambda, mu and Jbar, and the condition of what Lambda is the inverse of."""
-    solved = np.linalg.solve(M, J.T)
-    inverse = J @ solved
-    found = np.linalg.inv(inverse)
-    return (found, found @ (solved.T @ h - rate), solved @ found), float(np.linalg.cond(inverse))
 
 
 def relative(found: np.ndarray, expected: np.ndarray) -> float:
