@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.errors import ModelError
 from linegraph.joints import Joint
-from linegraph.search import Search, quoted
+from linegraph.pivoting import free_motions, without_inertia
+from linegraph.search import Search, least, quoted
+from linegraph.tolerance import DEPENDENT
 
 if TYPE_CHECKING:
     import random
@@ -23,8 +25,11 @@ if TYPE_CHECKING:
 
     Array = Any
 
-DEPENDENT = 1e-8
-"""A singular value of the scaled Jacobian below this fraction of the largest is zero."""
+ROUNDING = 1e-13
+"""A pivot of the mass matrix on the motions allowed that is this part of what it was made of is zero."""
+
+INDEPENDENT = (1e-4, 1e-6)
+"""Velocities determine the others if columns of J are farther from dependent than this; the first that some are."""
 
 
 @dataclass(frozen=True)
@@ -87,10 +92,8 @@ def consistent(
     search.close(near)
     beside = search.beside(near, 0.2) or search.beside(near, 0.05)
     q = near if beside is None else beside
-    v = [draw.uniform(-1, 1) for _ in search.tree.velocities]
-    rates = search.np.array(numeric.constraint_rates(q, v), float)
-    J = search.np.array(numeric.constraint_jacobian(q), float).reshape(len(rates), len(v))
-    step = search.np.linalg.lstsq(J, rates, rcond=DEPENDENT)[0]
+    v = [draw.uniform(-1, 1) * float(x) for x in search.of_velocities]
+    step = least(search.jacobian(q), search.rates(q, v)) * search.of_velocities
     return q, [float(x - dx) for x, dx in zip(v, step, strict=True)]
 
 
@@ -145,18 +148,18 @@ class _Judgement:
 
     def _independent(self, J: Array, rank: int) -> list[int]:
         """Velocities to keep: those declared last give way as long as the constraints determine them."""
-        np = self.np
-        scale = np.abs(J).max(initial=1e-300)
-        dependent: list[int] = []
-        for k in reversed(range(self.tree.layout.mechanical)):
+        np, count = self.np, self.tree.layout.mechanical
+        for apart in INDEPENDENT:
+            dependent: list[int] = []
+            for k in reversed(range(count)):
+                if len(dependent) == rank:
+                    break
+                columns = J[:, [*dependent, k]]
+                if np.linalg.svd(columns, compute_uv=False).min() > apart:
+                    dependent.append(k)
             if len(dependent) == rank:
-                break
-            columns = J[:, [*dependent, k]] / scale
-            if np.linalg.svd(columns, compute_uv=False).min() > 1e-4:
-                dependent.append(k)
-        if len(dependent) < rank:
-            return []
-        return sorted(set(range(self.tree.layout.mechanical)) - set(dependent))
+                return sorted(set(range(count)) - set(dependent))
+        return []
 
     def _require_consistent(self, q: list[float], J: Array, left: Array) -> None:
         """Refuse prescribed motions that contradict each other."""
@@ -165,9 +168,9 @@ class _Judgement:
         joints = {n for n, end in self.tree.ends.items() if isinstance(end.component, Joint)}
         for t in (self.numeric.t, self.numeric.t + 0.37):
             numeric = self.numeric.at(t)
-            rates = -np.array(numeric.constraint_rates(q, v), float)
+            rates = -self.search.rates(q, v, numeric)
             amiss = np.abs(left.T @ rates)
-            if amiss.max(initial=0.0) > 1e-6 * (1 + np.abs(rates).max(initial=0.0)):
+            if amiss.max(initial=0.0) > 1e-6 * np.abs(rates).max(initial=0.0):
                 worst = left[:, int(amiss.argmax())]
                 names = dict.fromkeys(
                     e.component
@@ -183,16 +186,14 @@ class _Judgement:
 
     def _massless(self, q: list[float], rank: int) -> list[str] | None:
         """The velocities of a motion that the constraints allow and nothing with mass takes part in."""
-        np = self.np
-        J = self.search.jacobian(q)[:, : self.tree.layout.mechanical]
-        M = np.array(self.numeric.mechanical_mass_matrix(q), float)
-        allowed = np.linalg.svd(J)[2][rank:].T if len(J) else np.eye(len(M))
-        if not allowed.shape[1]:
+        np, count = self.np, self.tree.layout.mechanical
+        sizes = self.search.of_velocities[:count]
+        M = np.array(self.numeric.mechanical_mass_matrix(q), float) * sizes * sizes[:, None]
+        allowed = free_motions(self.search.jacobian(q)[:, :count], rank)
+        found = without_inertia(M, allowed, ROUNDING)
+        if found is None:
             return None
-        values, vectors = np.linalg.eigh(allowed.T @ M @ allowed)
-        if values[0] > 1e-12 * max(np.abs(M).max(), 1e-300):
-            return None
-        motion = np.abs(allowed @ vectors[:, 0])
+        motion = np.abs(found)
         mechanical = self.tree.velocities[: self.tree.layout.mechanical]
         pairs = zip(mechanical, motion, strict=True)
         return [quantity.name for quantity, x in pairs if x > 0.1 * motion.max()]
@@ -223,5 +224,4 @@ class _Judgement:
         return self._rank_of(self.search.jacobian(q))
 
     def _rank_of(self, J: Array) -> int:
-        values = self.np.linalg.svd(J, compute_uv=False)
-        return int((values > DEPENDENT * values.max(initial=0.0)).sum())
+        return int((self.np.linalg.svd(J, compute_uv=False) > DEPENDENT).sum())

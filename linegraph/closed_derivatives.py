@@ -29,6 +29,7 @@ from linegraph.closed_programs import (
     routine,
 )
 from linegraph.errors import ModelError
+from linegraph.lengths import pure
 from linegraph.program import Program, Result, Routine
 from linegraph.slopes import columns, matrix, of_motion, turned, variables
 
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
     from linegraph.shared import Functions
 
 WELL_APART = 1e-4
-"""The least singular value, beside the largest entry, of columns of J that determine something."""
+"""The least singular value of columns of J, in pure numbers, that determine something."""
 
 
 def linearize(f: Functions) -> tuple[Program | Routine, ...]:
@@ -76,14 +77,14 @@ def free_changes(f: Functions) -> list[int]:
     own = [v for _, v in independent(f)]
     others = [k for k in range(f.tree.layout.mechanical) if k not in own]
     count = sum(equation.holonomic for equation in f.equations)
-    rows = f.derivation.numeric().constraint_jacobian(assembly(f).q)[:count]
-    J = numpy.array(rows, float).reshape(count, len(f.v))
-    scale = numpy.abs(J).max(initial=1e-300)
+    numeric = f.derivation.numeric()
+    rows = numpy.array(numeric.constraint_jacobian(assembly(f).q), float)
+    J = pure(rows.reshape(len(f.equations), len(f.v)), numeric.sizes)[:count]
     dependent: list[int] = []
     for k in [*reversed(others), *reversed(own)]:
         if len(dependent) == assembly(f).position_rank:
             return sorted({*own, *others} - {*dependent})
-        found = numpy.linalg.svd(J[:, [*dependent, k]] / scale, compute_uv=False)
+        found = numpy.linalg.svd(J[:, [*dependent, k]], compute_uv=False)
         if found.min() > WELL_APART and len(found) == len(dependent) + 1:
             dependent.append(k)
     return []
