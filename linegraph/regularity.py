@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from typing import TYPE_CHECKING
 
@@ -13,13 +14,19 @@ from linegraph.parameters import sample_values
 from linegraph.walk import kinematic_tree
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from linegraph.formulation import Formulation
     from linegraph.joints import Moments
     from linegraph.kinematics import KinematicTree, Link
     from linegraph.model import Model
+    from linegraph.orthogonality import Arm
 
 SINGULAR = 1e-13
 """A pivot of M below this fraction of what it was made of is zero up to rounding."""
+
+DUST = 1e-14
+"""An arm of this fraction of the greatest length in a model is rounding."""
 
 
 def require_regular(model: Model, formulation: Formulation) -> None:
@@ -101,18 +108,34 @@ def _first_dependent(tree: KinematicTree, seed: int) -> tuple[int, float] | None
     crossed = arms(tree, Floats(), q, [0.0] * len(tree.velocities))
     rows = mass_matrix(tree, Floats(), crossed)
     outward = tree.outward[: tree.layout.mechanical]
-    return _failing_pivot(rows, _scales(tree, composites(tree, Floats(), crossed)), outward)
+    return _failing_pivot(rows, _scales(tree, crossed, composites(tree, Floats(), crossed)), outward)
 
 
-def _scales(tree: KinematicTree, carried: list[Moments]) -> list[float]:
-    """What each coordinate's inertia would be in the worst direction: zero is judged beside it."""
+def _scales(tree: KinematicTree, crossed: Sequence[Arm], carried: list[Moments]) -> list[float]:
+    """What each coordinate's inertia would be in the worst direction: zero is judged beside it.
+
+    A turn about any axis through the joint, with the mass as far from it as it is, and a shift with all of it.
+    An arm that is rounding beside the model's own lengths is none.
+    """
     scales = [0.0] * len(tree.velocities)
-    for link, moments in zip(tree.links, carried, strict=True):
+    arm = DUST * _reach(tree)
+    for link, cross, moments in zip(tree.links, crossed, carried, strict=True):
         xx, _, _, yy, _, zz = moments.inertia
-        largest = abs(moments.mass) + sum(map(abs, moments.first)) + abs(xx) + abs(yy) + abs(zz)
-        for freedom in link.velocities:
-            scales[freedom.index] += freedom.ratio**2 * largest
+        mass, first = abs(moments.mass), math.hypot(*moments.first)
+        turning = abs(xx) + abs(yy) + abs(zz) + mass * arm * arm / SINGULAR
+        for a, freedom in enumerate(link.velocities):
+            w, u = math.hypot(*cross.motion.angular[a]), math.hypot(*cross.motion.linear[a])
+            size = w * w * turning + 2 * w * u * first + u * u * mass
+            scales[freedom.index] += freedom.ratio**2 * size
     return scales
+
+
+def _reach(tree: KinematicTree) -> float:
+    """The greatest length in a model: an arm from joint to joint or to a mass centre."""
+    arms = [math.hypot(*link.at) for link in tree.links]
+    masses = [link.moments for link in tree.links if link.moments.mass]
+    arms += [math.hypot(*m.first) / abs(m.mass) for m in masses]
+    return max(arms)
 
 
 def _failing_pivot(
