@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from codegen import layout, prose, routines, templates
+from codegen import layout, prose, real, routines, templates
 from codegen.options import DEFAULT
 from codegen.printer import Notation, number, print_program
 from linegraph.functions import ARITY
@@ -38,6 +38,7 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
         helpers=alone,
         guarded=any(isinstance(x, Program) and x.guarded for x in module.programs),
         quaternions=routines.quaternions(module),
+        small=real.TOLERANCES["double"],
         head=_indented(layout.head(module), 0),
         counts=list(layout.counts(module).items()),
         names=[
@@ -179,7 +180,9 @@ def _body(module: Module, program: Program | Routine) -> list[str]:
     if program.handed:
         return routines.handed(module, program, "python", "_")
     if isinstance(program, Routine):
-        return routines.body(module, program, "python", "_", literal)
+        return routines.body(
+            module, program, "python", "_", literal, real.TOLERANCES["double"]
+        )
     lines = []
     for call in program.calls:
         results = ", ".join(result.name for result in call.results)

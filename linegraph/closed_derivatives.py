@@ -61,7 +61,7 @@ def linearize(f: Functions) -> tuple[Program | Routine, ...]:
         "Linearisation in independent coordinates and velocities, at any state that satisfies the "
         "constraints: small changes follow dx' = A dx + B du with the dx that are listed."
     )
-    calls = ("forward_dynamics", "constrained_equations", "constrained_slopes", "reduction")
+    calls = ("forward_dynamics", "constrained_equations", "constrained_slopes", "reduction", "constraint_sizes")
     given = ("q", "v", "u")
     statuses = (SINGULAR, NO_INERTIA, CONTRADICTION)
     made = routine(f, "linearize", about, given, tuple(results), "linearization", statuses, calls)

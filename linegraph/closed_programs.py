@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from linegraph import network_programs
 from linegraph.errors import ModelError
 from linegraph.layout import has_plain_rates
+from linegraph.lengths import Given, sizes
 from linegraph.parameters import resolver
 from linegraph.program import Argument, Listing, Program, Quantity, Result, Routine, Status, reads
 
@@ -18,7 +19,9 @@ if TYPE_CHECKING:
     from linegraph.vector import Scalar
 
 SINGULAR = Status(
-    1, "the position is singular: more motions are free here than elsewhere", "SINGULAR_POSITION"
+    1,
+    "the position is singular or too near to one: more motions are free there than elsewhere",
+    "SINGULAR_POSITION",
 )
 NO_INERTIA = Status(
     2, "the mass matrix is singular on the motions that the constraints allow", "SINGULAR_INERTIA"
@@ -59,8 +62,26 @@ def constraints(f: Functions) -> tuple[Program | Routine, ...]:
             (_column("gam", f.chords.bias(), "what J vdot must be"),),
         ),
         _whole(f),
+        _sizes(f),
     ]
     return tuple(programs)
+
+
+def _sizes(f: Functions) -> Program:
+    """What makes J a matrix of pure numbers."""
+    f.dag.label = "lengths of loops"
+    numeric = f.derivation.numeric()
+    numbers = Given(numeric.tree, numeric.algebra, numeric.parameters)
+    found = sizes(Given(f.tree, f.dag, f.values), f.equations, numbers)
+    about = (
+        "Sizes that make J a matrix of pure numbers, J_ij of_v_j / of_phi_i: lengths L of the loops (m) for "
+        "forces and translations, 1 for torques and rotations, 0 for relations."
+    )
+    results = (
+        Result("of_phi", (len(f.equations),), tuple(found.constraints), "of constraints", ("NC",)),
+        Result("of_v", (len(f.v),), tuple(found.velocities), "of velocities", ("NV",)),
+    )
+    return f.program("constraint_sizes", about, (), results)
 
 
 def _whole(f: Functions) -> Program:
@@ -107,7 +128,14 @@ def forward_dynamics(f: Functions) -> tuple[Routine, ...]:
             results,
             "constrained_dynamics",
             statuses,
-            ("constrained_equations",),
+            (
+                "constrained_equations",
+                *_phi_calls(f),
+                "constraint_rates",
+                "constraint_bias",
+                "constraint_sizes",
+                "coordinate_rates",
+            ),
         ),
     )
 
@@ -124,7 +152,7 @@ def project(f: Functions) -> tuple[Program | Routine, ...]:
         "Bring q and v onto the constraints by Newton's method, along the directions that take the least "
         "kinetic energy; quaternions get length 1."
     )
-    calls = ("mass_matrix", *_phi_calls(f), "constraint_jacobian", "constraint_rates")
+    calls = ("mass_matrix", *_phi_calls(f), "constraint_jacobian", "constraint_rates", "constraint_sizes")
     return (
         routine(
             f,
@@ -158,7 +186,13 @@ def reduction(f: Functions) -> tuple[Program | Routine, ...]:
         ),
         "complete",
         (NOT_CLOSED, NOT_DETERMINED),
-        (*_phi_calls(f), "constraint_jacobian", "constraint_rates", "coordinate_rates"),
+        (
+            *_phi_calls(f),
+            "constraint_jacobian",
+            "constraint_rates",
+            "constraint_sizes",
+            "coordinate_rates",
+        ),
     )
     tangent = routine(
         f,
@@ -172,7 +206,7 @@ def reduction(f: Functions) -> tuple[Program | Routine, ...]:
         ),
         "reduction",
         (NOT_DETERMINED,),
-        ("constraint_jacobian", "constraint_bias"),
+        ("constraint_jacobian", "constraint_bias", "constraint_sizes"),
     )
     reduced = routine(
         f,
@@ -319,6 +353,8 @@ def routine(
     )
     details = (
         ("quaternions", _quaternions(f)),
+        ("mechanical", f.tree.layout.mechanical),
+        ("baumgarte", f.model.choices.baumgarte is not None),
         ("position_rank", assembly(f).position_rank),
         ("s_at", tuple(q for q, _ in chosen)),
         ("w_at", tuple(v for _, v in chosen)),
