@@ -32,6 +32,7 @@ _DOUBLE = {
     "closed": f"{CLOSED:g}",
     "accurate": f"{ACCURATE:g}",
     "any": "1e300",
+    "large": "1e100",
     "slack": "1e-2",
 }
 _FLOAT = {
@@ -44,6 +45,7 @@ _FLOAT = {
     "closed": "2e-5",
     "accurate": "2e-2",
     "any": "1e30",
+    "large": "1e30",
     "slack": "1e-2",
 }
 TOLERANCES = {"double": _DOUBLE, "float": _FLOAT}
@@ -52,7 +54,8 @@ TOLERANCES = {"double": _DOUBLE, "float": _FLOAT}
 rank: entries of J that are zero; pivot: of a mass matrix, beside what it was made of; residual: beside the size
 of its terms; rounding: of a constraint; step, still: corrections that change nothing any more; closed: a gap
 of loops that is none; accurate: the relative error of accelerations that is accepted; any: more than anything;
-slack: the part by which redundant constraints may contradict each other.
+large: what is taken for infinite in between, so that all languages agree; slack: the part by which redundant
+constraints may contradict each other.
 """
 
 _FUNCTIONS = sorted({*ARITY, "fabs", "fmax", "fmin"} - {"abs", "max", "min", "sign"})
