@@ -26,7 +26,7 @@ _DOUBLE = {
     "rank": f"{DEPENDENT:g}",
     "pivot": "1e-13",
     "residual": "1e-13",
-    "rounding": "2e-15",
+    "rounding": "5e-16",
     "step": "1e-14",
     "still": "1e-15",
     "closed": f"{CLOSED:g}",
@@ -39,7 +39,7 @@ _FLOAT = {
     "rank": "1e-5",
     "pivot": "5e-5",
     "residual": "5e-5",
-    "rounding": "1e-6",
+    "rounding": "2e-7",
     "step": "5e-6",
     "still": "5e-7",
     "closed": "2e-5",
@@ -49,13 +49,13 @@ _FLOAT = {
     "slack": "1e-2",
 }
 TOLERANCES = {"double": _DOUBLE, "float": _FLOAT}
-"""What algorithms take for rounding. Positions, velocities and rows of J are in pure numbers, see `lengths`.
+"""What algorithms take for rounding. Positions, velocities and rows of J are pure numbers, see `lengths`.
 
-rank: entries of J that are zero; pivot: of a mass matrix, beside what it was made of; residual: beside the size
-of its terms; rounding: of a constraint; step, still: corrections that change nothing any more; closed: a gap
-of loops that is none; accurate: the relative error of accelerations that is accepted; any: more than anything;
-large: what is taken for infinite in between, so that all languages agree; slack: the part by which redundant
-constraints may contradict each other.
+rank: entries of J that are zero; pivot: of a mass matrix, beside what it was made of; residual: beside the
+size of its terms; rounding: of a constraint; step, still: corrections that change nothing any more; closed:
+a gap of loops that is none; accurate: the relative error of accelerations that is accepted; any: more than
+anything; large: what is taken for infinite in between, so that all languages agree; slack: the part by which
+redundant constraints may contradict each other.
 """
 
 _FUNCTIONS = sorted({*ARITY, "fabs", "fmax", "fmin"} - {"abs", "max", "min", "sign"})

@@ -30,7 +30,7 @@ HELPERS = {
     ),
     "project": ("eliminate", "pure", "large", "largest", "constrained", "unit"),
     "complete": ("eliminate", "pure", "large", "largest", "determined", "unit"),
-    "reduction": ("eliminate", "pure", "large", "determined"),
+    "reduction": ("eliminate", "pure", "large", "largest", "determined", "unit"),
     "reduced_equations": (),
     "linearization": ("eliminate", "pure", "large", "largest", "constrained", "determined"),
     "after_dynamics": (),

@@ -29,7 +29,8 @@ ROUNDING = 1e-13
 """A pivot of the mass matrix on the motions allowed that is this part of what it was made of is zero."""
 
 INDEPENDENT = (1e-4, 1e-6)
-"""Velocities determine the others if columns of J are farther from dependent than this; the first that some are."""
+"""Velocities determine the others if columns of J are farther from dependent than the first of these that
+some are."""
 
 
 @dataclass(frozen=True)

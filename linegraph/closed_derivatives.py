@@ -24,6 +24,7 @@ from linegraph.closed_programs import assembly, independent, routine
 from linegraph.errors import ModelError
 from linegraph.lengths import pure
 from linegraph.program import Program, Result, Routine
+from linegraph.search import at_some_time
 from linegraph.slopes import columns, matrix, of_motion, turned, variables
 from linegraph.statuses import CONTRADICTION, NOT_DETERMINED, SINGULAR_INERTIA, SINGULAR_POSITION
 
@@ -55,7 +56,13 @@ def linearize(f: Functions) -> tuple[Program | Routine, ...]:
         "Linearisation in independent coordinates and velocities, at any state that satisfies the "
         "constraints: small changes follow dx' = A dx + B du with the dx that are listed."
     )
-    calls = ("forward_dynamics", "constrained_equations", "constrained_slopes", "reduction", "constraint_sizes")
+    calls = (
+        "forward_dynamics",
+        "constrained_equations",
+        "constrained_slopes",
+        "reduction",
+        "constraint_sizes",
+    )
     given = ("q", "v", "u")
     statuses = (SINGULAR_POSITION, SINGULAR_INERTIA, CONTRADICTION, NOT_DETERMINED)
     made = routine(f, "linearize", about, given, tuple(results), "linearization", statuses, calls)
@@ -71,7 +78,7 @@ def free_changes(f: Functions) -> list[int]:
     own = [v for _, v in independent(f)]
     others = [k for k in range(f.tree.layout.mechanical) if k not in own]
     count = sum(equation.holonomic for equation in f.equations)
-    numeric = f.derivation.numeric()
+    numeric = at_some_time(f.derivation)
     rows = numpy.array(numeric.constraint_jacobian(assembly(f).q), float)
     J = pure(rows.reshape(len(f.equations), len(f.v)), numeric.sizes)[:count]
     dependent: list[int] = []

@@ -10,6 +10,7 @@ from linegraph.layout import has_plain_rates
 from linegraph.lengths import Given, sizes
 from linegraph.parameters import resolver
 from linegraph.program import Argument, Listing, Program, Quantity, Result, Routine, reads
+from linegraph.search import at_some_time
 from linegraph.statuses import (
     CONTRADICTION,
     NO_VELOCITY,
@@ -64,7 +65,7 @@ def constraints(f: Functions) -> tuple[Program | Routine, ...]:
 def _sizes(f: Functions) -> Program:
     """What makes J a matrix of pure numbers."""
     f.dag.label = "lengths of loops"
-    numeric = f.derivation.numeric()
+    numeric = at_some_time(f.derivation)
     numbers = Given(numeric.tree, numeric.algebra, numeric.parameters)
     found = sizes(Given(f.tree, f.dag, f.values), f.equations, numbers)
     about = (
@@ -146,7 +147,13 @@ def project(f: Functions) -> tuple[Program | Routine, ...]:
         "Bring q and v onto the constraints by Newton's method, along the directions that take the least "
         "kinetic energy; quaternions get length 1."
     )
-    calls = ("mass_matrix", *_phi_calls(f), "constraint_jacobian", "constraint_rates", "constraint_sizes")
+    calls = (
+        "mass_matrix",
+        *_phi_calls(f),
+        "constraint_jacobian",
+        "constraint_rates",
+        "constraint_sizes",
+    )
     return (
         routine(
             f,
@@ -200,7 +207,14 @@ def reduction(f: Functions) -> tuple[Program | Routine, ...]:
         ),
         "reduction",
         (NOT_DETERMINED,),
-        ("constraint_jacobian", "constraint_bias", "constraint_sizes"),
+        (
+            *_phi_calls(f),
+            "constraint_jacobian",
+            "constraint_rates",
+            "constraint_bias",
+            "constraint_sizes",
+            "coordinate_rates",
+        ),
     )
     reduced = routine(
         f,
@@ -291,35 +305,6 @@ def listings(f: Functions) -> tuple[Listing, ...]:
 def counts(f: Functions) -> tuple[tuple[str, int], ...]:
     """How many constraints are of position, and how many are independent."""
     return (("NP", _positions(f)), ("RANK", assembly(f).rank))
-
-
-def remarks(f: Functions) -> tuple[str, ...]:
-    """What the head of a file says of a closed system."""
-    if not f.tree.closed:
-        return ()
-    found = assembly(f)
-    cut = ", ".join(dict.fromkeys(e.component for e in f.equations))
-    text = (
-        f"{len(f.equations)} constraints come from the chords of the tree ({cut}), "
-        "M vdot + h = Q + J^T lam with J vdot = gam; "
-        f"{found.rank} are independent: {freedoms_text(found.freedoms)}."
-    )
-    if f.tree.network is not None:
-        text += " With networks beside them they are not reduced to independent coordinates."
-    if found.redundant:
-        names = [
-            e.multiplier.name for e, one in zip(f.equations, found.unique, strict=True) if not one
-        ]
-        text += (
-            f" {found.redundant} are redundant: the motion is the same without them, but these multipliers, "
-            f"and the reactions that depend on them, are not unique: {', '.join(names)}."
-        )
-    return (text,)
-
-
-def freedoms_text(count: int) -> str:
-    """How many degrees of freedom there are, in words."""
-    return f"{count} degree{'' if count == 1 else 's'} of freedom"
 
 
 def routine(

@@ -7,8 +7,8 @@ numbers of size 1 at most, whatever the units and however large the mechanism:
 
     J_ij size(v_j) / size(phi_i)        size = L (m) or 1 (rad)
 
-L is the sum of the arms between the joints of a circuit, each measured in the axes of its link, so that it does
-not depend on the position. Circuits that share velocities share the largest of their lengths.
+L is the sum of the arms between the joints of a circuit, each measured in the axes of its link, so that it
+does not depend on the position. Circuits that share velocities share the largest of their lengths.
 """
 
 from __future__ import annotations

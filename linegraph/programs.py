@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from linegraph import (
     closed_programs,
+    closed_remarks,
     derivative_programs,
     edge_programs,
     kinematic_programs,
@@ -92,7 +93,7 @@ def module_of(
         name=name,
         about=(
             *about,
-            *closed_programs.remarks(functions),
+            *closed_remarks.remarks(functions),
             *network_programs.remarks(functions),
             *operational_programs.remarks(functions, chosen),
         ),

@@ -108,14 +108,16 @@ def _first_dependent(tree: KinematicTree, seed: int) -> tuple[int, float] | None
     crossed = arms(tree, Floats(), q, [0.0] * len(tree.velocities))
     rows = mass_matrix(tree, Floats(), crossed)
     outward = tree.outward[: tree.layout.mechanical]
-    return _failing_pivot(rows, _scales(tree, crossed, composites(tree, Floats(), crossed)), outward)
+    return _failing_pivot(
+        rows, _scales(tree, crossed, composites(tree, Floats(), crossed)), outward
+    )
 
 
 def _scales(tree: KinematicTree, crossed: Sequence[Arm], carried: list[Moments]) -> list[float]:
     """What each coordinate's inertia would be in the worst direction: zero is judged beside it.
 
-    A turn about any axis through the joint, with the mass as far from it as it is, and a shift with all of it.
-    An arm that is rounding beside the model's own lengths is none.
+    A turn about any axis through the joint, with the mass as far from it as it is, and a shift of all mass. An
+    arm that is rounding beside the model's own lengths is none.
     """
     scales = [0.0] * len(tree.velocities)
     arm = DUST * _reach(tree)

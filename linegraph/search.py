@@ -284,7 +284,9 @@ class Search:
             gaps.setdefault((equation.component, far), []).append(float(x))
             if far:
                 lengths[equation.component] = float(self.sizes.constraints[k])
-        (name, far), entries = max(gaps.items(), key=lambda item: float(self.np.hypot.reduce(item[1])))
+        (name, far), entries = max(
+            gaps.items(), key=lambda item: float(self.np.hypot.reduce(item[1]))
+        )
         size = float(self.np.hypot.reduce(entries))
         return name, f"{size * lengths[name]:.3g} m" if far else f"{size:.3g} rad"
 

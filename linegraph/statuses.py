@@ -34,7 +34,9 @@ CONTRADICTION = Status(906, "the constraints contradict each other", "CONTRADICT
 NOT_CLOSED = Status(907, "no position that satisfies the constraints was found", "NOT_CLOSED")
 NO_VELOCITY = Status(908, "the constraints of velocity contradict each other", "NO_VELOCITY")
 NOT_DETERMINED = Status(
-    909, "the independent coordinates do not determine the others here", "NOT_DETERMINED"
+    909,
+    "the independent coordinates do not determine the others here, or not with certainty",
+    "NOT_DETERMINED",
 )
 
 COMMON = (

@@ -71,7 +71,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("derive",),
     ("drawing", "network_programs"),
     ("closed_programs", "edge_programs", "interpretation", "modelfile", "urdf"),
-    ("prologue", "reading", "shared"),
+    ("closed_remarks", "prologue", "reading", "shared"),
     ("kinematic_programs", "loop_slopes", "pivots", "tangent"),
     ("operational_programs", "slopes"),
     ("closed_derivatives", "parameter_programs"),
@@ -103,7 +103,7 @@ SHOWING = re.compile(r"_repr_[a-z]+_")
 NO_PHYSICS = {"graph": {"errors"}, "topology": {"errors", "graph"}}
 CODEGEN_SEES = {
     f"linegraph.{name}"
-    for name in ("errors", "expression", "functions", "program", "statuses", "vectors")
+    for name in ("errors", "expression", "functions", "program", "statuses", "tolerance", "vectors")
 }
 CLOSED_FORMS = (
     "dynamic",

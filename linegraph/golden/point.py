@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from linegraph.assembly import DEPENDENT
 from linegraph.closure import equations
 from linegraph.golden.bodies import NOISE, Bodies
 from linegraph.golden.constraints import Constraints
@@ -18,6 +17,7 @@ from linegraph.golden.derivatives import Derivatives
 from linegraph.golden.kinematics import Kinematics
 from linegraph.golden.parameters import Parameters
 from linegraph.golden.walk import Walk
+from linegraph.tolerance import DEPENDENT
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

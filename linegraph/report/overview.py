@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from linegraph.closed_programs import freedoms_text
+from linegraph.closed_remarks import freedoms_text
 from linegraph.closure import equations
 from linegraph.domains import DOMAINS
 from linegraph.parameters import Parameter
