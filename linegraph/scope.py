@@ -53,14 +53,10 @@ def scope(
             derivatives = joint.rates(algebra, at, rates)
             if joint.drive is not None:
                 derivatives = rates
-        elif chords is None or joint.name not in known:
-            continue
         else:
-            try:
-                at, rates = chords.coordinates(known[joint.name])
-            except ModelError:
-                continue  # no formula gives them: a law that names them says so
-            derivatives = joint.rates(algebra, at, rates)
+            if chords is not None and joint.name in known:
+                values |= chords.named(known[joint.name])
+            continue
         for quantity, x, dx in zip(joint.positions(), at, derivatives, strict=True):
             values[quantity.name] = x
             values[f"der({quantity.name})"] = dx
