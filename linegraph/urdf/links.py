@@ -115,7 +115,8 @@ def _tensor(part: Part) -> Inertia:
     xx, xy, xz, yy, yz, zz = (inertia.number(entry) for entry in ENTRIES)
     problem = impossible((xx, xy, xz, yy, yz, zz))
     if problem:
-        inertia.warn(f"no body has this inertia: {problem}")
+        many = "no body has this inertia: a principal moment is negative or exceeds the sum of the others"
+        inertia.warn(f"no body has this inertia: {problem}", many)
     return (xx, xy, xz, yy, yz, zz)
 
 
