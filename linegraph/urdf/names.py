@@ -61,7 +61,9 @@ def _of_links(links: Sequence[Link], report: Report) -> dict[str, str]:
             reason = f'"{link.name}" has a meaning of its own in expressions'
         else:
             continue
-        other = next(x for x in numbered(f"{link.name}_link") if x not in names)
+        other = f"{link.name}_link"
+        while other in names:
+            other += "_"
         names.add(other)
         found[link.name] = other
         text = f'{reason}; the link becomes the body "{other}"'
