@@ -65,7 +65,7 @@ def claims_of(joint: Joint) -> list[Claim]:
     for velocity in joint.velocities():
         if velocity.name in positions:
             rate = f"{velocity.name}_dot"
-            found.append(Claim(rate, thing, "the rate of its coordinate,", f"a rate of {thing}"))
+            found.append(Claim(rate, thing, "its rate", f"a rate of {thing}"))
         else:
             found.append(Claim(velocity.name, thing, "its velocity", f"a velocity of {thing}"))
     many = isinstance(joint.drive, (tuple, list))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from linegraph.body import GROUND
-from linegraph.checks import RESERVED, reserved_problem
 from linegraph.components import COMPONENTS
 from linegraph.constraints import CONSTRAINTS
 from linegraph.elements import ELEMENTS
@@ -210,7 +209,7 @@ class _Builder:
 
     def _check_name(self, kind: str, name: str, owners: dict[str, str]) -> None:
         spot = self._spot(kind, name)
-        problem = name_problem(name) or (reserved_problem(name) if name in RESERVED else "")
+        problem = name_problem(name)
         if problem:
             spot.error(problem)
         elif kind in SHARED:
