@@ -23,13 +23,14 @@ if TYPE_CHECKING:
     from linegraph.differentiation import Symbol
     from linegraph.simplification import Simplifier
     from linegraph.simplification.numbers import Terms
-    from linegraph.simplification.polynomial import Poly
+    from linegraph.simplification.polynomial import Poly, Ring
     from linegraph.simplification.proof import Point
     from linegraph.simplification.quotients import Quotient
     from linegraph.sympy_walk import Expr
     from linegraph.vector import Scalar
 
 Rows = list[list[Any]]
+NOTHING: Rows = []
 
 UNDEFINED = "something is divided by zero there, or has no derivative"
 
@@ -46,7 +47,7 @@ class Letters:
         """Nothing is calculated yet."""
         self._simplifier = simplifier
         ring = simplifier.ring
-        exact = Exact(simplifier)
+        exact = self._exact = Exact(simplifier)
         self._known: dict[Symbol, Poly] = {symbol: exact.value(e) for symbol, e in values.items()}
         self._replay = Replay(exact, self._symbol, ring.poly)
         self._quotients = Quotients(ring, simplifier.points[0])
@@ -71,18 +72,35 @@ class Letters:
         """Let a symbol have a value from now on."""
         self._known[symbol] = value
 
-    def solve(self, rows: Rows, rights: Rows) -> Rows:
-        """X of rows X = rights, by elimination without fractions.
+    def value(self, e: Expr) -> Poly:
+        """A sympy expression."""
+        return self._exact.value(e)
+
+    def solve(
+        self, rows: Rows, rights: Rows, through: Rows = NOTHING, direct: Rows = NOTHING
+    ) -> tuple[Rows, Rows]:
+        """X of rows X = rights, by elimination without fractions, and through X + direct.
 
         Raises:
             Singular: it is not determined.
         """
-        found: Rows = self._quotients.solve(rows, rights)
-        return found
+        return self._quotients.solve(rows, rights, through, direct)
 
     def vanishes(self, x: Poly) -> bool:
         """Whether a scalar is zero."""
         return self._quotients.vanishes(x)
+
+    def quotient(self, x: Poly) -> Quotient:
+        """A scalar as a quotient without common factors."""
+        return self._quotients.of(x)
+
+    def shared(self, parts: Sequence[Terms]) -> Terms:
+        """The greatest common factor of several polynomials."""
+        return self._quotients.shared(parts)
+
+    def divided(self, terms: Terms, factor: Terms) -> Terms:
+        """A polynomial over a factor of it."""
+        return self._quotients.divided(terms, factor)
 
     def written(self, x: Poly) -> Expr:
         """A scalar as a sympy expression: a quotient without common factors."""
@@ -95,15 +113,20 @@ class Numbers:
     Args:
         point: the values of all letters.
         values: sympy expressions of these.
-        inexact: whether some numbers are floats.
+        ring: knows whether some numbers are floats.
     """
 
-    def __init__(self, point: Point, values: Mapping[Symbol, Expr], *, inexact: bool) -> None:
+    def __init__(self, point: Point, values: Mapping[Symbol, Expr], ring: Ring) -> None:
         """Nothing is calculated yet."""
         self._known: dict[Symbol, Any] = {s: point.expression(e) for s, e in values.items()}
         self._point = point
         self._replay = point.replay(self._symbol)
-        self.zero = ROUNDED if inexact else ZERO
+        self._ring = ring
+
+    @property
+    def zero(self) -> float:
+        """How small something is, beside the terms of its sum, to be zero."""
+        return ROUNDED if self._ring.inexact else ZERO
 
     def _symbol(self, symbol: Symbol) -> Any:
         return self._known[symbol] if symbol in self._known else self._point.value(symbol)
@@ -123,18 +146,24 @@ class Numbers:
         """Let a symbol have a value from now on."""
         self._known[symbol] = value
 
-    def solve(self, rows: Rows, rights: Rows) -> Rows:
-        """X of rows X = rights, by Gauss with row pivots.
+    def value(self, e: Expr) -> Any:
+        """A sympy expression."""
+        return self._point.expression(e)
+
+    def solve(
+        self, rows: Rows, rights: Rows, through: Rows = NOTHING, direct: Rows = NOTHING
+    ) -> tuple[Rows, Rows]:
+        """X of rows X = rights, by Gauss with row pivots, and through X + direct.
 
         Raises:
             Singular: it is not determined.
         """
-        size = len(rows)
+        size, zero = len(rows), self.zero
         both = [[*row, *right] for row, right in zip(rows, rights, strict=True)]
         scales = [max((abs(x) for x in row), default=0) for row in rows]
         for k in range(size):
             best = max(range(k, size), key=lambda i: abs(both[i][k]) / (scales[i] or 1))
-            if abs(both[best][k]) <= self.zero * scales[best]:
+            if abs(both[best][k]) <= zero * scales[best]:
                 raise Singular(list(range(k, size)))
             both[k], both[best] = both[best], both[k]
             scales[k], scales[best] = scales[best], scales[k]
@@ -143,18 +172,26 @@ class Numbers:
                 if i != k and both[i][k] != 0:
                     factor = both[i][k] / pivot[k]
                     both[i] = [a - factor * b for a, b in zip(both[i], pivot, strict=True)]
-        return [[x / row[k] for x in row[size:]] for k, row in enumerate(both)]
+        found = [[x / row[k] for x in row[size:]] for k, row in enumerate(both)]
+        products = [
+            [
+                sum((x * other[k] for x, other in zip(row, found, strict=True)), start=y)
+                for k, y in enumerate(start)
+            ]
+            for row, start in zip(through, direct, strict=True)
+        ]
+        return found, products
 
     def basis(self, rows: Rows, columns: Sequence[int]) -> list[tuple[int, int]]:
         """Rows that are independent, each with a column that it determines; earlier columns first."""
-        left = {i: list(row) for i, row in enumerate(rows)}
+        left, zero = {i: list(row) for i, row in enumerate(rows)}, self.zero
         scales = {i: max((abs(x) for x in row), default=0) for i, row in left.items()}
         found = []
         for j in columns:
             if not left:
                 break
             best = max(left, key=lambda i: (abs(left[i][j]) / (scales[i] or 1), -i))
-            if abs(left[best][j]) <= self.zero * scales[best]:
+            if abs(left[best][j]) <= zero * scales[best]:
                 continue
             own = left.pop(best)
             found.append((best, j))
@@ -179,12 +216,13 @@ def quotient_written(simplifier: Simplifier, x: Quotient) -> Expr:
         scale = max(Fraction(abs(k)) for k in below.values())
     if 2 * sum(k < 0 for k in below.values()) > len(below):
         scale = -scale
-    parts = [_scaled(terms, scale) for terms in (above, below)]
+    parts = [scaled(terms, scale) for terms in (above, below)]
     upper, lower = (simplifier.of_terms(terms) for terms in parts)
     return upper / lower
 
 
-def _scaled(terms: Terms, scale: Fraction | int) -> Terms:
+def scaled(terms: Terms, scale: Fraction | int) -> Terms:
+    """Coefficients over a number: whole ones where they are, else floats."""
     if scale in (1, -1):
         return {term: k * int(scale) for term, k in terms.items()}
     found = {}

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 Rows = list[list[Any]]
 """A matrix of scalars."""
 
+Solution = tuple[Rows, Rows]
+
 LOOP = "loop"
 
 
@@ -45,8 +47,8 @@ class Calculator(Protocol):
     def give(self, symbol: Symbol, value: Any) -> None:
         """Let a symbol have a value from now on."""
 
-    def solve(self, rows: Rows, rights: Rows) -> Rows:
-        """X of rows X = rights."""
+    def solve(self, rows: Rows, rights: Rows, through: Rows = ..., direct: Rows = ...) -> Solution:
+        """X of rows X = rights, and through X + direct."""
 
 
 @dataclass(frozen=True)
@@ -183,7 +185,7 @@ def accelerations(motion: Motion, at: Calculator, freedoms: Freedoms) -> tuple[l
     kept = [i for i, _ in freedoms.rows]
     right = [[at(x)] for x in motion.right]
     right += [[at(motion.bias[i])] for i in kept]
-    found = [x for (x,) in at.solve(_saddle(motion, at, kept), right)]
+    found = [x for (x,) in at.solve(_saddle(motion, at, kept), right)[0]]
     lam = [at(0)] * len(motion.jacobian)
     for i, x in zip(kept, found[motion.size :], strict=True):
         lam[i] = x
@@ -199,7 +201,7 @@ def linear(motion: Motion, slopes: Slopes, at: Calculator, freedoms: Freedoms) -
         at: a state; it knows a and lam.
         freedoms: which changes are independent.
     """
-    n, loops = motion.size, len(motion.loop)
+    n = motion.size
     kept = [i for i, _ in freedoms.rows]
     moved, turning = _allowed(motion, slopes, at, freedoms)
     by = len(moved) or len(motion.rates) + n + motion.inputs
@@ -218,23 +220,15 @@ def linear(motion: Motion, slopes: Slopes, at: Calculator, freedoms: Freedoms) -
     rows = [row + z for row, z in zip(whole, [*force_z, *bias_z], strict=True)]
     rows += [[zero] * len(whole) + z for z in residue_z]
     rights = [[-x for x in row] for row in (*force, *bias, *residue)]
-    found = at.solve(rows, rights)
-    above = turning if motion.jacobian else along(slopes.rates)[0]
-    state = above + [found[k] for k in freedoms.own]
     direct, direct_z = along(slopes.outputs)
-    lam = [[zero] * len(rights[0])] * len(motion.jacobian) if rights else []
-    for i, row in zip(kept, found[n : n + len(kept)], strict=True):
-        lam[i] = row
-    solution = [*found[:n], *lam, *(found[len(found) - loops :] if loops else [])]
+    solution = [*range(n), *(n + i for i in kept)]
     through = [
-        row + z for row, z in zip(_at(at, slopes.by_solution), direct_z, strict=True)
+        [row[k] for k in solution] + z
+        for row, z in zip(_at(at, slopes.by_solution), direct_z, strict=True)
     ]
-    dependent = _product(through, solution)
-    outputs = [
-        [x + y for x, y in zip(a, b, strict=True)] if b else a
-        for a, b in zip(direct, dependent, strict=True)
-    ]
-    return state, outputs
+    found, outputs = at.solve(rows, rights, through, direct)
+    above = turning if motion.jacobian else along(slopes.rates)[0]
+    return above + [found[k] for k in freedoms.own], outputs
 
 
 def _allowed(motion: Motion, slopes: Slopes, at: Calculator, freedoms: Freedoms) -> tuple[Rows, Rows]:
@@ -257,7 +251,7 @@ def _allowed(motion: Motion, slopes: Slopes, at: Calculator, freedoms: Freedoms)
     for j, k in enumerate(free):
         rows.append([one if k == c else zero for c in range(mechanical)])
         rights.append(unit(j))
-    changes = at.solve(rows, rights)
+    changes, _ = at.solve(rows, rights)
     drift = _product([row[:mechanical] for row in _at(at, slopes.drift)], changes)
     rows, rights = [], []
     for i, _ in freedoms.rows:
@@ -266,7 +260,7 @@ def _allowed(motion: Motion, slopes: Slopes, at: Calculator, freedoms: Freedoms)
     for j, k in enumerate(own):
         rows.append([one if k == c else zero for c in range(n)])
         rights.append(unit(len(free) + j))
-    velocities = at.solve(rows, rights)
+    velocities, _ = at.solve(rows, rights)
     inputs = [unit(len(free) + len(own) + k) for k in range(motion.inputs)]
     turned = _product(_at(at, slopes.adjoint), changes)
     going = [[x - y for x, y in zip(velocities[k], turned[k], strict=True)] for k in free]

@@ -157,11 +157,11 @@ class Simplifier:
             e: how it is written.
             valued: whether the expression is its value, too.
         """
-        self._defined[symbol] = e
-        self._names[e] = symbol
-        if valued:
+        if valued:  # before it is known by its name
             for point in self._points:
                 point.define(symbol, e)
+        self._defined[symbol] = e
+        self._names[e] = symbol
 
     def of_terms(self, terms: Terms) -> Expr:
         """The closed form of a polynomial of the ring."""

@@ -70,7 +70,7 @@ class Quotients:
         >>> m, k = ring.symbol("p", "m"), ring.symbol("p", "k")
         >>> from linegraph.simplification.proof import Point
         >>> quotients = Quotients(ring, Point(ring, {}, 0))
-        >>> [[x]] = quotients.solve([[m * m + m * k]], [[k * m]])
+        >>> [[x]], _ = quotients.solve([[m * m + m * k]], [[k * m]])
         >>> above, below = quotients.of(x)
         >>> above == k.terms, below == (m + k).terms
         (True, True)
@@ -111,35 +111,56 @@ class Quotients:
         self._known[frozenset(found.terms.items())] = x
         return found
 
-    def solve(self, rows: Sequence[Sequence[Poly]], rights: Sequence[Sequence[Poly]]) -> Any:
-        """The rows of X.
+    def shared(self, parts: Sequence[Terms]) -> Terms:
+        """The greatest common factor of polynomials, positive."""
+        polys = [Poly(self._ring, part) for part in parts]
+        space = _Space(self._ring, polys)
+        found = None
+        for x in sorted(space.cleared(polys), key=len):
+            found = x if found is None else found.gcd(x)
+            if found == 1:
+                break
+        return {} if found is None else space.terms(found)[0]
 
-        Args:
-            rows: a square matrix.
-            rights: as many rows, of any length.
+    def divided(self, terms: Terms, factor: Terms) -> Terms:
+        """A polynomial over a factor of it."""
+        if factor == {0: 1}:
+            return terms
+        return self.of(Poly(self._ring, terms) / Poly(self._ring, factor)).above
+
+    def solve(
+        self,
+        rows: Sequence[Sequence[Poly]],
+        rights: Sequence[Sequence[Poly]],
+        through: Sequence[Sequence[Poly]] = (),
+        direct: Sequence[Sequence[Poly]] = (),
+    ) -> tuple[list[list[Poly]], list[list[Poly]]]:
+        """X of rows X = rights, and Y = through X + direct.
+
+        Y comes from the same elimination, so that what X has in denominators meets there and cancels.
 
         Raises:
-            Singular: it is not regular.
+            Singular: the matrix is not regular.
             Swollen: the budget is used up.
         """
         size = len(rows)
-        if not size:
-            return []
-        space = _Space(self._ring, [x for part in (rows, rights) for row in part for x in row])
-        both = [
-            space.cleared([*row, *right]) for row, right in zip(rows, rights, strict=True)
-        ]
+        given = [[*row, *right] for row, right in zip(rows, rights, strict=True)]
+        given += [[-x for x in row] + list(y) for row, y in zip(through, direct, strict=True)]
+        space = _Space(self._ring, [x for row in given for x in row])
+        one = self._ring.poly(1)
+        both = [space.cleared([*row, one]) for row in given]
+        for row in both[:size]:
+            row[-1] = space.zero
         values = [[self._point.terms(x.terms) for x in row] for row in rows]
         places = self._eliminated(both, values)
         found: list[list[Poly]] = [[] for _ in rows]
         for place, column in places:
-            row = both[place]
-            below = row[column]
-            found[column] = [
-                self.poly(self._cancelled(space, above, below)) if above else self._ring.poly(0)
-                for above in row[size:]
-            ]
-        return found
+            found[column] = self._row(space, both[place][size:-1], both[place][column])
+        return found, [self._row(space, row[size:-1], row[-1]) for row in both[size:]]
+
+    def _row(self, space: _Space, above: Sequence[Element], below: Element) -> list[Poly]:
+        zero = self._ring.poly(0)
+        return [self.poly(self._cancelled(space, x, below)) if x else zero for x in above]
 
     def _eliminated(self, rows: list[list[Element]], values: Any) -> list[tuple[int, int]]:
         """Leave one entry in each row of the matrix; the places of these.
@@ -147,7 +168,7 @@ class Quotients:
         The pivot is the shortest entry that is not zero, of equals the one that fills the least, then the
         last: masses are eliminated from the leaves to the root.
         """
-        size = len(rows)
+        size = len(values)
         mirror = _Numbers(values, self.zero)
         left, open_columns = list(range(size)), list(range(size))
         found: list[tuple[int, int]] = []
@@ -275,6 +296,11 @@ class _Space:
         symbols = [sympy.Symbol(f"g{place}") for place in self._places]
         self._poly = PolyRing(symbols, sympy.ZZ)
         self._inverses: dict[int, tuple[Element, Element]] = {}
+
+    @property
+    def zero(self) -> Element:
+        """Zero among them."""
+        return self._poly.zero
 
     def cleared(self, row: Sequence[Poly]) -> list[Element]:
         """A row times whatever makes its entries polynomials with whole coefficients."""
