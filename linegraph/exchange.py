@@ -209,6 +209,10 @@ class Exchange:
             return self.solved[place]
         return self.algebra.symbol("loop", place)
 
+    def algebraic_loop(self) -> list[Scalar]:
+        """What is zero in the algebraic loop."""
+        return [self.still(residue) for residue in self.network.loop]
+
     @cached_property
     def solved(self) -> list[float]:
         """The unknowns of the algebraic loop, in floats."""
