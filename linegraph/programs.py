@@ -31,6 +31,7 @@ from linegraph.program import (
 from linegraph.prologue import COUNT, with_prologue
 from linegraph.regularity import is_solid, sample_tree
 from linegraph.shared import ARGUMENTS, Functions
+from linegraph.sums import with_sums_collected
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -85,6 +86,8 @@ def module_of(
     constants = 0
     if "p" in functions.head and prologue:
         programs, constants = with_prologue(programs)
+    else:
+        programs = with_sums_collected(programs)
     tree = functions.tree
     closed = closed_programs.listings(functions) if tree.closed else ()
     whole = (network_programs.state_listing(tree),) if "rhs" in chosen else ()
