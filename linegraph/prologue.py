@@ -128,9 +128,10 @@ def with_prologue(
     handing = _Handing(programs, prologue)
     whole: list[Program | Routine] = [prologue]
     for program in with_sums_collected(programs):
-        whole.append(handing.of(program))
-        if program.name in found:
-            whole.append(found[program.name])
+        if program.name not in found:
+            whole.append(program)
+            continue
+        whole += [handing.of(program), found[program.name]]
     return tuple(whole), len(entries)
 
 
