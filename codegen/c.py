@@ -10,6 +10,7 @@ from codegen import (
     batch,
     declare,
     failures,
+    guard,
     layout,
     naming,
     packages,
@@ -54,6 +55,7 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
         "small": real.TOLERANCES[options.real],
         "ok": f"{macro}_{failures.OK}",
         "failures": _failures(module),
+        "guards_parameters": guard.reads_parameters(module),
     }
     kind = straight.Kind(inline=options.trig == "inline", real=options.real)
     functions = [x for program in module.programs for x in _define(module, program, statuses, kind)]
@@ -62,7 +64,7 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
         "c/source.c.jinja",
         functions=functions,
         batches=batches,
-        helpers=routines.helpers(module),
+        helpers=[*guard.helpers(module), *routines.helpers(module)],
         w_at=routines.independent(module),
         quaternions=routines.quaternions(module),
         needs=_needs(module, functions, wide),
@@ -101,10 +103,11 @@ def _define(
     if program.handed:
         return [(head, routines.handed(module, program, "c", prefix))]
     if isinstance(program, Routine):
-        return [
-            (head, routines.body(module, program, "c", prefix, small=real.TOLERANCES[kind.real]))
-        ]
-    return straight.define(module, program, statuses, kind)
+        lines = routines.body(module, program, "c", prefix, small=real.TOLERANCES[kind.real])
+        made = [(declare.signature(module, program, statuses, core=True), lines)]
+    else:
+        made = straight.define(module, program, statuses, kind)
+    return [*made, (head, guard.lines(module, program))] if statuses[program.name] else made
 
 
 def _needs(
@@ -115,7 +118,7 @@ def _needs(
     text = "\n".join(line for _, body in (*functions, *wide) for line in body)
     heads = "\n".join(head for head, _ in (*functions, *wide))
     marks = {
-        "sign": f"{name}_sign_of",
+        **{own: f"{name}_{own}_of" for own in straight.OWN},
         "one": f"{name}_sincos",
         "all": f"{name}_all_sincos",
         "lanes_sincos": f"{name}_lanes_sincos",
@@ -141,7 +144,7 @@ def _names(macro: str, listing: Listing) -> tuple[str, str, str, list[str]]:
 def _failures(module: Module) -> list[str]:
     """The lines of constants for statuses, if any function returns one."""
     found = failures.constants(module)
-    if not found and not any(program.status for program in module.programs):
+    if not found:
         return []
     rows = [(f"{module.name.upper()}_{failures.OK}", 0, "the outputs are written")]
     rows += [(name, key[0], "; or ".join(about)) for key, (name, about) in found.items()]
@@ -179,6 +182,4 @@ def _document(module: Module, program: Program | Routine, taken: Mapping[str, in
     if found:
         texts = "; ".join(f"{name} ({number}): {about}" for number, about, name in found)
         lines += prose.paragraph(f"@return {ok} (0), or with all outputs untouched {texts}", 4)
-    elif program.status:
-        lines += prose.paragraph(f"@return {ok} (0): it cannot fail")
     return block([*lines, *_stack(taken[f"{module.name}_{program.name}"])])

@@ -77,7 +77,7 @@ def _c(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
                     (result, key, math.prod(vectors.values[key].shape))
                     for result, key in zip(_results(module, x), x.results, strict=True)
                 ],
-                "fails": _program(module, x).status or bool(statuses[x.function]),
+                "fails": bool(statuses[x.function]),
             }
             for x in vectors.expected
         ],

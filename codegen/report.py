@@ -54,7 +54,7 @@ def table(module: Module, source: str, bytes_of: Mapping[str, int]) -> list[str]
 
 
 def _is_part(part: str, name: str) -> bool:
-    return part == name or re.fullmatch(rf"{name}_part\d+", part) is not None
+    return part == name or re.fullmatch(rf"{name}_(?:part\d+|core)", part) is not None
 
 
 def _operations(program: Program | Routine) -> tuple[str, ...]:

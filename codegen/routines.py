@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from codegen import failures, layout, templates
 from linegraph.program import PREPARED_SUFFIX, Routine
+from linegraph.statuses import NOT_FINITE_INPUT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -18,18 +19,24 @@ if TYPE_CHECKING:
     from linegraph.program import Module, Program
 
 HELPERS = {
-    "constrained_dynamics": ("eliminate", "constrained"),
-    "project": ("eliminate", "constrained", "unit"),
-    "complete": ("eliminate", "determined", "unit"),
-    "reduction": ("eliminate", "determined"),
+    "constrained_dynamics": ("eliminate", "large", "constrained"),
+    "project": ("eliminate", "large", "norm", "constrained", "unit"),
+    "complete": ("eliminate", "large", "norm", "determined", "unit"),
+    "reduction": ("eliminate", "large", "determined"),
     "reduced_equations": (),
-    "linearization": ("eliminate", "constrained", "determined"),
+    "linearization": ("eliminate", "large", "constrained", "determined"),
     "after_dynamics": (),
     "rhs": (),
-    "newton": ("eliminate", "norm"),
+    "newton": ("eliminate", "norm", "rounding"),
 }
 """The algorithms, and what they share."""
 
+
+CONSTANTS = "c"
+"""The argument that is no input: what `prepare` returned. It may be infinite where a check tells of it."""
+
+CHECKED = "_as_in_c"
+"""What Python calls functions with that report no status, where a status is reported."""
 
 BATCHED = ("after_dynamics", "rhs")
 """Algorithms that only call others, so that they take many states at once where those do."""
@@ -61,12 +68,11 @@ def body(
     routine: Routine,
     language: str,
     prefix: str,
-    quote: Callable[[str], str] = str,
     small: Mapping[str, str] | None = None,
 ) -> list[str]:
     """The lines of a routine's body.
 
-    `quote` writes what a status means as a string; `small` are the tolerances of `real.TOLERANCES`.
+    `small` are the tolerances of `real.TOLERANCES`.
     """
     counts = layout.counts(module)
     text = templates.fill(
@@ -78,8 +84,7 @@ def body(
         ok=f"{module.name.upper()}_{failures.OK}",
         status=_constants(module, routine),
         small=small or {},
-        call=_calling(module, routine, prefix),
-        texts={status: quote(about) for status, about, _ in routine.statuses},
+        call=_calling(module, routine, prefix, CHECKED if language == "python" else ""),
         fails={name for name, found in layout.statuses(module).items() if found},
         **dict(routine.details),
     )
@@ -90,10 +95,10 @@ def body(
     return lines
 
 
-def _constants(module: Module, routine: Routine) -> dict[int, str]:
-    """The named constants of a routine's own statuses."""
+def _constants(module: Module, routine: Routine) -> dict[str, str]:
+    """The named constants of a routine's own statuses, by name."""
     named = failures.constants(module)
-    return {x.number: named[x.number, x.name][0] for x in routine.statuses}
+    return {x.name: named[x.number, x.name][0] for x in failures.own(routine)}
 
 
 def handed(module: Module, program: Program | Routine, language: str, prefix: str) -> list[str]:
@@ -105,19 +110,24 @@ def handed(module: Module, program: Program | Routine, language: str, prefix: st
         prefix=prefix,
         function=program.handed,
         others=[a.name for a in program.arguments if a.name != "p"] + results,
-        status=program.status or bool(layout.statuses(module)[program.name]),
+        status=bool(layout.statuses(module)[program.name]),
+        not_finite_input=f"{module.name.upper()}_{NOT_FINITE_INPUT.name}",
     )
     return text.rstrip("\n").split("\n")
 
 
-def _calling(module: Module, routine: Routine, prefix: str) -> Callable[..., str]:
+def _calling(
+    module: Module, routine: Routine, prefix: str, checked: str = ""
+) -> Callable[..., str]:
     """How a template calls another function.
 
     ``call("bias", "h", v="v_on")`` gives ``arm_bias(p, q, v_on, h)``.
     The first names are those of the results; arguments have their own names unless renamed. One that takes
-    the constants of `prepare` calls others that do.
+    the constants of `prepare` calls others that do. Those that report no status are called by `checked`, if
+    there is such a function.
     """
     programs = {program.name: program for program in module.programs}
+    statuses = layout.statuses(module)
 
     def call(name: str, *results: str, **renamed: str) -> str:
         if name not in routine.uses:
@@ -125,6 +135,8 @@ def _calling(module: Module, routine: Routine, prefix: str) -> Callable[..., str
         if name not in routine.uses:
             raise ValueError(f"{routine.name} does not say that it calls {name}")
         given = [renamed.get(x.name, x.name) for x in programs[name].arguments]
+        if checked and not statuses[name]:
+            return f"{checked}({', '.join([prefix + name, *given, *results])})"
         return f"{prefix}{name}({', '.join([*given, *results])})"
 
     return call

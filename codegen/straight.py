@@ -29,7 +29,9 @@ if TYPE_CHECKING:
 Definition = tuple[str, list[str]]
 """The head of a function and the lines between its braces."""
 
-RENAMED = {"abs": "fabs", "min": "fmin", "max": "fmax"}
+OWN = ("sign", "min", "max")
+"""Functions of the file itself: that of <math.h> is missing, or it hides what is not a number."""
+
 SHARED = ("p", "c", "t")
 """Arguments that all states of a batch have in common."""
 
@@ -53,7 +55,9 @@ class Kind:
 
 def function(module: Module, name: str) -> str:
     """What C calls a function of `ARITY`: that of <math.h>, or the file's own, after the module."""
-    return f"{module.name}_sign_of" if name == "sign" else RENAMED.get(name, name)
+    if name in OWN:
+        return f"{module.name}_{name}_of"
+    return "fabs" if name == "abs" else name
 
 
 def define(
@@ -73,7 +77,7 @@ class _Writer:
         self.prefix, self.macro = module.name, module.name.upper()
         self.ok = f"{self.macro}_{failures.OK}"
         live = live_nodes(program)
-        self.wide = _wide(program, live) if kind.wide else frozenset()
+        self.wide = varying(program, live) if kind.wide else frozenset()
         special = kind.wide or kind.inline
         forced = filter(self.apart, live) if special else paired(live)
         items = arranged(program, forced)
@@ -118,20 +122,19 @@ class _Writer:
             lines.append("    int status;")
         lines += [f"    (void){x.name};" for x in program.arguments if x.name not in self.used()]
         lines += [f"    (void){x.name};" for x in program.results if not x.entries]
-        returning = {x.name for x in self.module.programs if x.status}
         for call, may_fail in zip(program.calls, fails, strict=True):
-            ignored = "(void)" if call.program in returning and not may_fail else ""
-            text = f"{ignored}{self.prefix}_{call.program}({_given(call)});"
+            text = f"{self.prefix}_{call.program}({_given(call)});"
             lines += _called(text, may_fail, self.ok)
         lines += self.sines() + main
-        if program.status or self.statuses[program.name]:
+        if self.statuses[program.name]:
             lines.append(f"    return {self.ok};")
         return [*made, (self.signature(), lines)]
 
     def signature(self) -> str:
         """The head of the function itself."""
         if not self.kind.wide:
-            return declare.signature(self.module, self.program, self.statuses)
+            core = bool(self.statuses[self.program.name])
+            return declare.signature(self.module, self.program, self.statuses, core=core)
         parts = [self.argument(x) for x in self.program.arguments]
         parts += [declare.result(self.module, x, self.kind.number) for x in self.program.results]
         return declare.head(f"static void {self.prefix}_{self.program.name}_lanes(", parts)
@@ -315,7 +318,7 @@ class _Writer:
         return f"{text} + zero"
 
 
-def _wide(program: Program, live: Iterable[Node]) -> frozenset[int]:
+def varying(program: Program, live: Iterable[Node]) -> frozenset[int]:
     """The nodes that differ from state to state."""
     found: set[int] = set()
     for node in live:

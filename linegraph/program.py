@@ -61,7 +61,7 @@ class Check:
     """After `node` is known: unless ``node > bound``, stop with `status`, results untouched.
 
     Attributes:
-        name: what languages with named constants call the status.
+        status, about, name: the number, the meaning and the name of the status (`statuses`).
         fraction: of `bound` is what the node must exceed; it stands for the rounding of doubles.
     """
 

@@ -42,7 +42,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("simplification",),
     ("state_space", "tidy"),
     ("parameters", "program", "rotation", "topology"),
-    ("checks", "constants", "elements"),
+    ("checks", "constants", "elements", "statuses"),
     ("body", "choices"),
     ("components",),
     ("constraints", "joints", "network"),
@@ -102,7 +102,8 @@ SHOWING = re.compile(r"_repr_[a-z]+_")
 
 NO_PHYSICS = {"graph": {"errors"}, "topology": {"errors", "graph"}}
 CODEGEN_SEES = {
-    f"linegraph.{name}" for name in ("errors", "expression", "functions", "program", "vectors")
+    f"linegraph.{name}"
+    for name in ("errors", "expression", "functions", "program", "statuses", "vectors")
 }
 CLOSED_FORMS = (
     "dynamic",
