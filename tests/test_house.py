@@ -43,7 +43,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("state_space", "tidy"),
     ("parameters", "program", "rotation", "topology"),
     ("checks", "constants", "elements", "statuses"),
-    ("body", "choices"),
+    ("body", "choices", "sums"),
     ("components",),
     ("constraints", "joints", "network"),
     ("terminals", "words"),
@@ -129,7 +129,7 @@ ONLY_THERE = {
         "linegraph.emission",
         "linegraph.evaluation",
         "linegraph.named_frames",
-        "linegraph.cli",
+        "linegraph.cli_options",
     },
 }
 FORBIDDEN = {"eval", "exec", "compile", "__import__", "parse_expr", "lambdify", "system", "popen"}

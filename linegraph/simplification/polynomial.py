@@ -28,11 +28,8 @@ Harmonic: TypeAlias = tuple[tuple[int, int], ...]
 SYMBOL, SIN, COS, ROOT, INVERSE, FUNCTION = "symbol", "sin", "cos", "root", "inverse", "function"
 
 BITS = 16
-ZERO_DIGIT = 2 ** (BITS - 2)
-"""What is added to a digit so that exponents may be negative.
-
-They stay below it, so that a digit of a product of two terms shows by its highest bit that it left its range.
-"""
+ZERO_DIGIT = 1 << (BITS - 2)
+"""What is added to a digit so that exponents may be negative; they stay below it."""
 
 MOST_ANGLES = 4
 """Sines of longer sums are not taken apart."""
@@ -41,16 +38,15 @@ COORDINATES = "q"
 
 
 class Swollen(Exception):
-    """An expression has more terms than the budget allows, or a power beyond what terms can hold.
+    """An expression has more terms than the budget allows; `problem` says it."""
 
-    Attributes:
-        problem: what it has too much of.
-    """
+    problem = "has too many terms"
 
-    def __init__(self, problem: str = "has too many terms") -> None:
-        """By default too many terms."""
-        super().__init__(problem)
-        self.problem = problem
+
+class TooHigh(Swollen):
+    """A power is beyond what terms can hold."""
+
+    problem = f"has a power above {ZERO_DIGIT - 1}, too high"
 
 
 class Generator(NamedTuple):
@@ -302,7 +298,7 @@ class Ring:
             term, k = pending.pop()
             biased = term + self._bias
             if biased < 0 or biased & self._high:
-                raise Swollen(f"has a power above {ZERO_DIGIT - 1}, too high")
+                raise TooHigh
             for mask, shift, square in self._squares:
                 # an exponent below zero has these bits, too
                 if biased & mask and (biased >> shift & (2**BITS - 1)) >= ZERO_DIGIT + 2:
