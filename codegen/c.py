@@ -99,11 +99,12 @@ def _define(
     kind: straight.Kind,
 ) -> list[straight.Definition]:
     """A function, after what it is made of."""
-    head, prefix = declare.signature(module, program, statuses), f"{module.name}_"
+    head = declare.signature(module, program, statuses)
+    dialect = routines.Dialect("c", f"{module.name}_", passed=True)
     if program.handed:
-        return [(head, routines.handed(module, program, "c", prefix))]
+        return [(head, routines.handed(module, program, dialect))]
     if isinstance(program, Routine):
-        lines = routines.body(module, program, "c", prefix, small=real.TOLERANCES[kind.real])
+        lines = routines.body(module, program, dialect, small=real.TOLERANCES[kind.real])
         made = [(declare.signature(module, program, statuses, core=True), lines)]
     else:
         made = straight.define(module, program, statuses, kind)

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 _WIDTH = 96
 
+_DIALECT = routines.Dialect("python", "_", passed=False, checked="_as_in_c")
+
 
 def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
     """The one file of a module; no option concerns it."""
@@ -191,9 +193,9 @@ def _sizes(program: Program | Routine) -> str:
 def _body(module: Module, program: Program | Routine, notation: Notation) -> list[str]:
     """The lines of a private function: arguments and results are lists of components."""
     if program.handed:
-        return routines.handed(module, program, "python", "_")
+        return routines.handed(module, program, _DIALECT)
     if isinstance(program, Routine):
-        return routines.body(module, program, "python", "_", real.TOLERANCES["double"])
+        return routines.body(module, program, _DIALECT, real.TOLERANCES["double"])
     lines = []
     for call in program.calls:
         results = ", ".join(result.name for result in call.results)

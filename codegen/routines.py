@@ -7,7 +7,7 @@ module's other functions.
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from codegen import failures, layout, templates
 from linegraph.program import PREPARED_SUFFIX, Routine
@@ -43,11 +43,24 @@ HELPERS = {
 CONSTANTS = "c"
 """The argument that is no input: what `prepare` returned. It may be infinite where a check tells of it."""
 
-CHECKED = "_as_in_c"
-"""What Python calls functions with that report no status, where a status is reported."""
-
 BATCHED = ("after_dynamics", "rhs")
 """Algorithms that only call others, so that they take many states at once where those do."""
+
+
+class Dialect(NamedTuple):
+    """How a language has its routines.
+
+    Attributes:
+        folder: of its templates.
+        prefix: of its functions' names.
+        passed: whether results are arguments, which the function writes, and arguments not read are listed.
+        checked: the function that calls those that report no status, where a status is reported.
+    """
+
+    folder: str
+    prefix: str
+    passed: bool
+    checked: str = ""
 
 
 def helpers(module: Module) -> list[str]:
@@ -74,8 +87,7 @@ def _detail(module: Module, name: str) -> tuple[int, ...]:
 def body(
     module: Module,
     routine: Routine,
-    language: str,
-    prefix: str,
+    dialect: Dialect,
     small: Mapping[str, str] | None = None,
 ) -> list[str]:
     """The lines of a routine's body.
@@ -84,7 +96,7 @@ def body(
     """
     counts = layout.counts(module)
     text = templates.fill(
-        f"{language}/routines/{routine.algorithm}.jinja",
+        f"{dialect.folder}/routines/{routine.algorithm}.jinja",
         counts={"NC": 0, "NP": 0, "NI": 0, **counts},
         results=", ".join(result.name for result in routine.results),
         name=module.name,
@@ -92,12 +104,12 @@ def body(
         ok=f"{module.name.upper()}_{failures.OK}",
         status=_constants(module, routine),
         small=small or {},
-        call=_calling(module, routine, prefix, CHECKED if language == "python" else ""),
+        call=_calling(module, routine, dialect),
         fails={name for name, found in layout.statuses(module).items() if found},
         **dict(routine.details),
     )
     lines = text.rstrip("\n").split("\n")
-    if language == "c":
+    if dialect.passed:
         names = (argument.name for argument in routine.arguments)
         lines[:0] = [f"    (void){x};" for x in names if not re.search(rf"\b{x}\b", text)]
     return lines
@@ -109,13 +121,13 @@ def _constants(module: Module, routine: Routine) -> dict[str, str]:
     return {x.name: named[x.number, x.name][0] for x in failures.own(routine)}
 
 
-def handed(module: Module, program: Program | Routine, language: str, prefix: str) -> list[str]:
+def handed(module: Module, program: Program | Routine, dialect: Dialect) -> list[str]:
     """The lines of a function that only prepares the constants and calls the one that takes them."""
-    results = [result.name for result in program.results] if language == "c" else []
+    results = [result.name for result in program.results] if dialect.passed else []
     text = templates.fill(
-        f"{language}/handed.jinja",
+        f"{dialect.folder}/handed.jinja",
         macro=module.name.upper(),
-        prefix=prefix,
+        prefix=dialect.prefix,
         function=program.handed,
         others=[a.name for a in program.arguments if a.name != "p"] + results,
         status=bool(layout.statuses(module)[program.name]),
@@ -124,9 +136,7 @@ def handed(module: Module, program: Program | Routine, language: str, prefix: st
     return text.rstrip("\n").split("\n")
 
 
-def _calling(
-    module: Module, routine: Routine, prefix: str, checked: str = ""
-) -> Callable[..., str]:
+def _calling(module: Module, routine: Routine, dialect: Dialect) -> Callable[..., str]:
     """How a template calls another function.
 
     ``call("bias", "h", v="v_on")`` gives ``arm_bias(p, q, v_on, h)``.
@@ -135,6 +145,7 @@ def _calling(
     there is such a function.
     """
     programs = {program.name: program for program in module.programs}
+    prefix = dialect.prefix
     statuses = layout.statuses(module)
 
     def call(name: str, *results: str, **renamed: str) -> str:
@@ -143,8 +154,8 @@ def _calling(
         if name not in routine.uses:
             raise ValueError(f"{routine.name} does not say that it calls {name}")
         given = [renamed.get(x.name, x.name) for x in programs[name].arguments]
-        if checked and not statuses[name]:
-            return f"{checked}({', '.join([prefix + name, *given, *results])})"
+        if dialect.checked and not statuses[name]:
+            return f"{dialect.checked}({', '.join([prefix + name, *given, *results])})"
         return f"{prefix}{name}({', '.join([*given, *results])})"
 
     return call

@@ -7,7 +7,7 @@ import struct
 import subprocess
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import codegen_samples as samples
 import numpy as np
@@ -18,7 +18,7 @@ from compiled import Compiled
 
 import codegen
 from codegen import Options, real
-from linegraph import Model
+from linegraph import Model, modelfile
 from linegraph.cli import main
 from linegraph.emission import emit, module_for, render
 from linegraph.errors import ModelError, NameRefused
@@ -55,6 +55,40 @@ def deviations() -> dict[str, str]:
     """The rules in the table of the document, with their reasons."""
     rows = re.findall(r"^\| (\d+\.\d+) \| ([^|]+) \|", DOCUMENT, re.MULTILINE)
     return dict(rows)
+
+
+# ---- compilers that cannot
+
+
+def complaint(folder: Path, name: str, *flags: str) -> list[str]:
+    """The errors of gcc, without the places where they are."""
+    command = ["gcc", *flags, "-c", f"{name}.c", "-o", f"{name}.o"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    return re.findall(r"error: (?:#error )?(.*)", done.stderr)
+
+
+def test_floats_before_c99_stop_the_compiler(tmp_path: Path) -> None:
+    """There sinf would be taken for a function that returns int."""
+    if lacking := targets.missing("gcc"):
+        pytest.skip(lacking)
+    emit(modelfile.read(PENDULUM), tmp_path, name="arm", languages=["c"], real="float")
+    said = "floats need the mathematics of C99: compile with -std=c99 or later, or emit with --real double"
+    assert complaint(tmp_path, "arm", "-std=c89")[0] == f'"{said}"'
+    assert said in " ".join(DOCUMENT.split())
+    assert complaint(tmp_path, "arm", "-std=c99") == []
+    assert complaint(tmp_path, "arm", "-x", "c++", "-std=c++98") == []
+
+
+@pytest.mark.parametrize("options", [{"batch": True}, {"trig": "inline"}])
+def test_lanes_that_there_are_not_stop_the_compiler(options: Any, tmp_path: Path) -> None:
+    if lacking := targets.missing("gcc"):
+        pytest.skip(lacking)
+    emit(modelfile.read(PENDULUM), tmp_path, name="arm", languages=["c"], **options)
+    said = "ARM_LANES must be 1, 2, 4 or 8: define it as one of these, or leave it undefined"
+    for wrong in (16, 3, 0, -1):
+        assert complaint(tmp_path, "arm", f"-DARM_LANES={wrong}") == [f'"{said}"']
+    for right in (1, 2, 4, 8):
+        assert complaint(tmp_path, "arm", f"-DARM_LANES={right}", "-Wno-psabi") == []
 
 
 # ---- floats

@@ -45,7 +45,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("state_space", "tidy"),
     ("parameters", "program", "rotation", "topology"),
     ("checks", "constants", "elements", "statuses"),
-    ("body", "choices"),
+    ("body", "choices", "sums"),
     ("components",),
     ("constraints", "joints", "network"),
     ("register", "terminals", "words"),
@@ -131,7 +131,7 @@ ONLY_THERE = {
         "linegraph.emission",
         "linegraph.evaluation",
         "linegraph.named_frames",
-        "linegraph.cli",
+        "linegraph.cli_options",
     },
 }
 FORBIDDEN = {"eval", "exec", "compile", "__import__", "parse_expr", "lambdify", "system", "popen"}
