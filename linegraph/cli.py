@@ -133,6 +133,7 @@ def emit(
                 languages=languages or None,
                 folded=parameters == "folded",
                 progress=tell,
+                warn=_warn,
                 **choices,
             )
         for path in written:
@@ -380,8 +381,12 @@ def _read(
         joint, value = assignment(lock, "--lock", 0.0)
         model.lock(joint, value)
     for warning in model.warnings:
-        click.echo(f"{click.style('warning:', fg='yellow', bold=True)} {warning}", err=True)
+        _warn(warning)
     return model
+
+
+def _warn(text: str) -> None:
+    click.echo(f"{click.style('warning:', fg='yellow', bold=True)} {text}", err=True)
 
 
 @contextmanager

@@ -74,7 +74,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("prologue", "reading", "shared"),
     ("kinematic_programs", "loop_slopes", "pivots", "tangent"),
     ("operational_programs", "slopes"),
-    ("closed_derivatives", "parameter_programs"),
+    ("closed_derivatives", "division", "parameter_programs"),
     ("derivative_programs",),
     ("programs",),
     ("codegen", "golden", "trees"),
