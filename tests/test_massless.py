@@ -138,7 +138,7 @@ def test_a_notebook_is_told_the_same() -> None:
         lambda: derivation.function("forward_dynamics"),
         lambda: derivation.function("reactions"),
         lambda: derivation.symbolic.rates,
-        lambda: derivation.linearise(),
+        derivation.linearise,
     )
     for ask in asked:
         with pytest.raises(ModelError, match=r'"j3": moves no inertia .* "j4" \(l4\)'):
