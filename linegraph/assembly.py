@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from linegraph.errors import ModelError
 from linegraph.joints import Joint
 from linegraph.pivoting import free_motions, without_inertia
+from linegraph.regularity import Idle, link_of
 from linegraph.search import Search, least, quoted
 from linegraph.tolerance import DEPENDENT
 
@@ -45,6 +46,7 @@ class Assembly:
         freedoms: the degrees of freedom: velocities less independent constraints.
         unique: for each constraint whether its multiplier is the only one possible.
         independent: velocities that the others follow from; the first such set in declared order.
+        massless: the joints of motions that the constraints allow and nothing with mass takes part in.
     """
 
     q: list[float]
@@ -54,6 +56,7 @@ class Assembly:
     freedoms: int
     unique: list[bool]
     independent: list[int]
+    massless: tuple[Idle, ...] = ()
 
 
 def assemble(
@@ -139,13 +142,12 @@ class _Judgement:
         unique = [bool(np.abs(left[k]).max(initial=0.0) < 1e-6) for k in range(rows)]
         self._require_consistent(at, J, left)
         independent = self._independent(J, best)
-        massless = [self._massless(place, best) for place in places]
-        if all(massless):
-            raise self._no_inertia(massless[0] or [])
+        motions = [self._massless(place, best) for place in places]
+        massless = self._idle(motions[0]) if all(motions) else ()
         position_rank = self._rank_of(J[: sum(e.holonomic for e in self.equations)])
         place = [float(x) for x in q]
         counts = (best, position_rank, rows - best, self.tree.layout.mechanical - best)
-        return Assembly(place, *counts, unique, independent)
+        return Assembly(place, *counts, unique, independent, massless)
 
     def _independent(self, J: Array, rank: int) -> list[int]:
         """Velocities to keep: those declared last give way as long as the constraints determine them."""
@@ -185,33 +187,29 @@ class _Judgement:
                 problem = f"is over-driven: {quoted(whole)} contradict each other; free one of them"
                 raise ModelError(self.search.who(whole[0]), problem)
 
-    def _massless(self, q: list[float], rank: int) -> list[str] | None:
-        """The velocities of a motion that the constraints allow and nothing with mass takes part in."""
+    def _massless(self, q: list[float], rank: int) -> list[int]:
+        """The velocities in motions that the constraints allow and nothing with mass takes part in."""
         np, count = self.np, self.tree.layout.mechanical
         sizes = self.search.of_velocities[:count]
-        M = np.array(self.numeric.mechanical_mass_matrix(q), float) * sizes * sizes[:, None]
+        M = np.array(self._inertia(q), float) * sizes * sizes[:, None]
         allowed = free_motions(self.search.jacobian(q)[:, :count], rank)
-        found = without_inertia(M, allowed, ROUNDING)
-        if found is None:
-            return None
-        motion = np.abs(found)
-        mechanical = self.tree.velocities[: self.tree.layout.mechanical]
-        pairs = zip(mechanical, motion, strict=True)
-        return [quantity.name for quantity, x in pairs if x > 0.1 * motion.max()]
+        found: set[int] = set()
+        for motion in without_inertia(M, allowed, ROUNDING):
+            found.update(np.flatnonzero(np.abs(motion) > 1e-6 * np.abs(motion).max()).tolist())
+        return sorted(found)
 
-    def _no_inertia(self, names: Sequence[str]) -> ModelError:
-        """What to tell of a motion without inertia: it is one of these velocities together."""
-        places = [quantity.name for quantity in self.tree.velocities]
-        link = next(
-            link
-            for link in self.tree.links
-            if any(freedom.index == places.index(names[0]) for freedom in link.velocities)
-        )
-        problem = (
-            f"moves no inertia that the loops allow to move ({quoted(names)}): the mass matrix is singular "
-            "there. Give the bodies mass and inertia"
-        )
-        return ModelError(f'joint "{link.joint.name}"', problem)
+    def _inertia(self, q: list[float]) -> list[list[float]]:
+        """M of mechanics, what networks add to it where they are defined."""
+        size = self.tree.layout.mechanical
+        try:
+            return [row[:size] for row in self.numeric.mass_matrix(q)[:size]]
+        except (ModelError, ArithmeticError):
+            return self.numeric.mechanical_mass_matrix(q)
+
+    def _idle(self, velocities: Sequence[int]) -> tuple[Idle, ...]:
+        """The joints of these velocities, each once."""
+        links = {link.name: link for link in (link_of(self.tree, k) for k in velocities)}
+        return tuple(Idle("joint", link.joint.name, name) for name, link in links.items())
 
     def _driven_with(self, chord: str) -> list[str]:
         """The prescribed joints in the circuit of a chord."""

@@ -28,6 +28,7 @@ from linegraph.paper import paper_matrices
 from linegraph.program import Program
 from linegraph.programs import module_of
 from linegraph.prologue import PREPARE
+from linegraph.regularity import cause
 from linegraph.united import network_entries
 
 if TYPE_CHECKING:
@@ -55,17 +56,19 @@ class Findings:
         paper: of the paper's matrices from the float reference; None where a link turns against ground.
         power: of the power balance of mechanics; None where a prescribed motion does work, or nothing moves.
         audit: of the sums of through times across, relative to the largest power.
+        idle: why M is singular, so that no accelerations follow to judge powers by; power and audit are None.
     """
 
     program: float
     paper: float | None
     power: float | None
-    audit: float
+    audit: float | None
+    idle: str = ""
 
     @property
     def good(self) -> bool:
         """Whether all differences are rounding."""
-        found = (self.program, self.paper or 0.0, self.power or 0.0, self.audit)
+        found = (self.program, self.paper or 0.0, self.power or 0.0, self.audit or 0.0)
         return all(difference < TOLERANCE for difference in found)
 
 
@@ -82,6 +85,7 @@ def check(derivation: Derivation, seed: int = 0) -> Findings:
     driven = any(place.drive for place in tree.layout.places.values())
     driven = driven or any(any(drives) for drives in tree.layout.drives.values())
     unmoved = not tree.layout.mechanical
+    idle = cause(derivation.idle) if derivation.idle else ""
     for _ in range(STATES):
         state = _state(derivation, draw)
         M, h = state.reference()
@@ -90,11 +94,15 @@ def check(derivation: Derivation, seed: int = 0) -> Findings:
             worst[0] = max(worst[0], state.constraint_difference(module))
         if not tree.levelled:
             worst[1] = max(worst[1], state.difference(M, h, *state.printed()))
+        if idle:
+            continue  # no acceleration follows from M and h
         a, lam = state.solved(M, h)
         if not driven:
             worst[2] = max(worst[2], state.power_defect(a))
         worst[3] = max(worst[3], state.audit(a, lam))
     paper = None if tree.levelled else worst[1]
+    if idle:
+        return Findings(worst[0], paper, None, None, idle)
     return Findings(worst[0], paper, None if driven or unmoved else worst[2], worst[3])
 
 
@@ -276,6 +284,11 @@ def report(derivation: Derivation, findings: Findings, heading: Callable[[str], 
         )
     else:
         lines.append(f"  paper's matrices and float reference  {findings.paper:.1e}")
+    if findings.idle:
+        why = f"not judged: M is singular, as {findings.idle}"
+        lines.append(f"  power balance and audit               {why}")
+        lines.append("good" if findings.good else "NOT GOOD: please report this model")
+        return "\n".join(lines) + "\n"
     if findings.power is None:
         why = "prescribed motion does work" if tree.layout.mechanical else "nothing moves"
         lines.append(f"  power balance                         not judged: {why}")

@@ -100,6 +100,8 @@ def function(derivation: Derivation, what: Any, frames: Iterable[str] = ()) -> F
     only = _maker(what) if named or what in PROGRAMS else ()
     module = module_of(derivation, name, folded=folded, about=(), only=only, frames=named)
     known = [program.name for program in module.programs]
+    if what in module.omitted:
+        raise derivation.no_inverse([what])
     if what not in known:
         frame = "; its frame has to be in frames=(...)" * what.startswith(FRAME_FUNCTIONS)
         raise ModelError(f'function "{what}"', f"is not there; {nearest(what, known)}{frame}")

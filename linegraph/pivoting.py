@@ -47,19 +47,23 @@ def _eliminated(J: Array, most: int) -> tuple[Array, int, list[int], list[int]]:
     return A, most, rows, columns
 
 
-def without_inertia(M: Array, T: Array, rounding: float) -> Array | None:
-    """A combination of the motions T that moves no inertia of M, or None.
+def without_inertia(M: Array, T: Array, rounding: float) -> list[Array]:
+    """Combinations of the motions T that move no inertia of M; without them T^T M T is regular.
 
     A pivot of T^T M T is zero if it is a smaller part than `rounding` of what it was made of.
     """
     import numpy as np
 
     R, made_of = T.T @ M @ T, np.diag(np.abs(T).T @ np.abs(M) @ np.abs(T))
+    found: list[Array] = []
+    kept: list[int] = []
     for k in range(len(R)):
-        before = R[:k, :k]
+        before = R[np.ix_(kept, kept)]
         # scaled, since light and heavy bodies stand side by side
         scale = 1 / np.sqrt(np.diag(before))
-        share = np.linalg.solve(before * scale * scale[:, None], R[:k, k] * scale) * scale
-        if not R[k, k] - R[:k, k] @ share > rounding * made_of[k]:
-            return T[:, k] - T[:, :k] @ share
-    return None
+        share = np.linalg.solve(before * scale * scale[:, None], R[kept, k] * scale) * scale
+        if R[k, k] - R[kept, k] @ share > rounding * made_of[k]:
+            kept.append(k)
+        else:
+            found.append(T[:, k] - T[:, kept] @ share)
+    return found

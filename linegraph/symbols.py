@@ -182,9 +182,10 @@ class Symbolic:
         return self.mass_matrix.LUsolve(right).applyfunc(sympy.simplify)
 
     def require_open(self, what: str) -> None:
-        """Refuse what constraints do not allow."""
+        """Refuse what constraints or a singular mass matrix do not allow."""
         if self.tree.closed:
             raise ModelError(what, "there are constraints; their multipliers have no closed form")
+        self._derivation.require_inverse(what)
 
     @cached_property
     def energy(self) -> tuple[Expr, ...]:
