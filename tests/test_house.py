@@ -43,7 +43,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("state_space", "tidy"),
     ("parameters", "program", "rotation", "topology"),
     ("checks", "constants", "elements"),
-    ("body", "choices"),
+    ("body", "bounds", "choices"),
     ("components",),
     ("constraints", "joints", "network"),
     ("terminals", "words"),

@@ -6,7 +6,7 @@ accelerations is NumPy's.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -14,16 +14,21 @@ from linegraph.assembly import DEPENDENT
 from linegraph.closure import equations
 from linegraph.golden.bodies import NOISE, Bodies
 from linegraph.golden.constraints import Constraints
+from linegraph.golden.cuts import Cuts
 from linegraph.golden.derivatives import Derivatives
+from linegraph.golden.edges import Edges
 from linegraph.golden.kinematics import Kinematics
+from linegraph.golden.outputs import Outputs
 from linegraph.golden.parameters import Parameters
 from linegraph.golden.walk import Walk
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from linegraph.derive import Derivation
     from linegraph.golden.walk import Valued
+
+    Array = Any
 
 
 class Kept(NamedTuple):
@@ -48,6 +53,8 @@ class Point:
         q, v, a: the state and accelerations, which are any.
         q_off, v_off: coordinates beside q that close no loop, and velocities that need not be allowed.
         kept: what is independent.
+        p: values of parameters that are not the model's own.
+        lam: multipliers, which are any.
     """
 
     derivation: Derivation
@@ -59,6 +66,8 @@ class Point:
     q_off: list[float]
     v_off: list[float]
     kept: Kept = NOTHING
+    p: Mapping[str, float] = field(default_factory=dict)
+    lam: list[float] = field(default_factory=list)
 
     @property
     def s(self) -> list[float]:
@@ -83,7 +92,7 @@ class Point:
 
     def at(self, q: Sequence[float], v: Sequence[float]) -> Walk:
         """How everything moves at a state."""
-        return Walk(self.derivation.numeric(None, self.t, self.u), q, v)
+        return Walk(self.derivation.numeric(self.p, self.t, self.u), q, v)
 
     @cached_property
     def walk(self) -> Walk:
@@ -116,6 +125,27 @@ class Point:
         return Parameters(self.walk, self.bodies, self.walk.np.array(self.a), self.inverse)
 
     @cached_property
+    def edges(self) -> Edges:
+        """Every edge, under the inputs."""
+        return self._edges(*self.motion)
+
+    @cached_property
+    def edges_at(self) -> Edges:
+        """Every edge, at any accelerations and multipliers."""
+        np = self.walk.np
+        given = (np.array(x, float) for x in (self.a, self.lam))
+        a, lam = ((x, np.zeros(len(x))) for x in given)
+        return self._edges(a, lam)
+
+    def _edges(self, a: Valued, lam: Valued) -> Edges:
+        return Edges(Cuts(self.derivation, self.walk, self.bodies, self.kinematics, a, lam))
+
+    @cached_property
+    def outputs(self) -> Valued:
+        """What the model asks for by name."""
+        return Outputs(self.edges).values
+
+    @cached_property
     def force(self) -> Valued:
         """Q - h."""
         (Q, of_Q), (h, of_h) = self.bodies.forces, self.bodies.bias
@@ -137,19 +167,35 @@ class Point:
     @cached_property
     def motion(self) -> tuple[Valued, Valued]:
         """v̇ and λ of ``M v̇ = Q - h + Jᵀ λ``, ``J v̇ = γ``, λ of least norm where it is not unique."""
-        np, n = self.walk.np, len(self.v)
-        (M, of_M), (force, of_force) = self.bodies.mass_matrix, self.force
-        J = np.zeros((0, n))
-        right, size = force, of_force
+        J = self.walk.np.zeros((0, len(self.v)))
+        right = J[:, 0], J[:, 0]
         if self.walk.tree.closed:
-            J, (bias, of_bias) = self.closed.jacobian[0], self.stabilised
-            right, size = np.concatenate([force, bias]), np.concatenate([of_force, of_bias])
+            J, right = self.closed.jacobian[0], self.stabilised
+        return self._saddle(self.bodies.mass_matrix, J, self.force, right)
+
+    @cached_property
+    def projected(self) -> Valued:
+        """Velocities that obey the constraints: from any, by the change of least kinetic energy."""
+        np, off = self.walk.np, self.at(self.q, self.v_off)
+        zero, v = np.zeros(len(self.v)), np.array(self.v_off)
+        rates, of_rates = Constraints(off).rates
+        masses, J = Bodies(off).mass_matrix, self.closed.jacobian[0]
+        (step, size), _ = self._saddle(masses, J, (zero, zero), (-rates, of_rates))
+        return v + step, np.abs(v) + size
+
+    def _saddle(
+        self, masses: Valued, J: Array, force: Valued, right: Valued
+    ) -> tuple[Valued, Valued]:
+        """Both unknowns of ``M x = force + Jᵀ y``, ``J x = right``, y of least norm if not unique."""
+        np, n = self.walk.np, len(self.v)
+        (M, of_M), (upper, of_upper), (lower, of_lower) = masses, force, right
+        whole, size = np.concatenate([upper, lower]), np.concatenate([of_upper, of_lower])
         rows = np.block([[M, -J.T], [J, np.zeros((len(J), len(J)))]])
         scale = self.scale(rows, of_M)
-        scaled, right, size = rows * scale * scale[:, None], right * scale, size * scale
+        scaled, whole, size = rows * scale * scale[:, None], whole * scale, size * scale
         inverse = np.linalg.pinv(scaled, rcond=1e-10) if len(J) else np.linalg.inv(scaled)
-        found = inverse @ right
-        found += inverse @ (right - scaled @ found)
+        found = inverse @ whole
+        found += inverse @ (whole - scaled @ found)
         # first order: how far errors in the rows and on the right carry, into what is not determined too
         free = np.abs(np.eye(len(rows)) - inverse @ scaled) * bool(len(J))
         parts = np.abs(inverse) @ (size + np.abs(scaled) @ np.abs(found))

@@ -10,6 +10,7 @@ from linegraph.constraints import CONSTRAINTS
 from linegraph.elements import ELEMENTS
 from linegraph.joints import JOINTS
 from linegraph.model import Model
+from linegraph.modelfile.bounded import CHECK
 from linegraph.modelfile.expressions import Names
 from linegraph.modelfile.kinds import WRONG, said
 from linegraph.modelfile.names import name_problem
@@ -116,6 +117,7 @@ class _Builder:
         for kind, name in self._tables(*COMPONENTS):
             self._element(kind, name)
         self._formulation()
+        self._check()
         read_outputs(self._data.get("outputs", {}), self._spot("outputs"), self._names, self._model)
         return self._model
 
@@ -225,6 +227,14 @@ class _Builder:
         if isinstance(found.get("coordinates"), dict):
             found["of_body"] = found.pop("coordinates")
         self._model.formulation(**found)
+
+    def _check(self) -> None:
+        if not isinstance(self._data.get("check"), dict):
+            return
+        found = CHECK.read(self._data["check"], self._spot("check"), self._names)
+        if found is not WRONG:
+            self._model.places["check"] = self._report.line(("check",)) or 1
+            self._model.check_within(**found)
 
     def _basement(self) -> None:
         if isinstance(self._data.get("basement"), dict):
