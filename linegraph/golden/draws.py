@@ -14,6 +14,7 @@ from linegraph.assembly import consistent
 from linegraph.checks import nearest
 from linegraph.closure import equations
 from linegraph.errors import ModelError
+from linegraph.golden.blame import undefined
 from linegraph.golden.point import Kept, Point
 
 if TYPE_CHECKING:
@@ -56,6 +57,8 @@ GAP = 1e-9
 BESIDE = 0.02
 """How far guesses are from positions: so little that they lead to these, and to no other way to assemble."""
 
+SINGULAR = "no state was found at which all laws are defined and M is regular"
+
 Asked = dict[str, "Callable[[Point], Valued]"]
 """The results of a function, and what gives them."""
 
@@ -69,7 +72,6 @@ class Drawing:
         draw: where randomness comes from.
         kept: what is independent under constraints.
         chosen: for each function that is to be defined at the states, its results.
-        free: whether parameters without a value are drawn.
         varied: whether those with a value may be: the functions take them as an argument.
     """
 
@@ -77,7 +79,6 @@ class Drawing:
     draw: random.Random
     kept: Kept
     chosen: Sequence[Asked]
-    free: bool = False
     varied: bool = True
 
     def points(self, count: int = STATES) -> list[Point]:
@@ -135,9 +136,18 @@ class Drawing:
             except (ArithmeticError, ValueError):
                 continue
         if first is not None:
-            raise first
+            raise undefined(self.derivation, first, self._somewhere())
         who = f'model "{self.derivation.model.name}"'
-        raise ModelError(who, "no state was found at which all laws are defined and M is regular")
+        raise ModelError(who, SINGULAR)
+
+    def _somewhere(self) -> Numeric | None:
+        """The model for some inputs, at a time, to ask whose law is not defined."""
+        tree, bounds = self.derivation.structure, self.derivation.model.bounds
+        u = self._some(tree.inputs, bounds.inputs, (-1.0, 1.0))
+        try:
+            return self.derivation.numeric(None, bounds.sometime, u)
+        except (ModelError, ArithmeticError):
+            return None
 
     def _drawn(self, within: tuple[float, float], *, rest: bool, varied: bool) -> Point | None:
         """A state: at rest in mechanics, or a random one, on the constraints if there are any.
@@ -191,10 +201,8 @@ class Drawing:
             if parameter.derived:
                 continue
             bound = model.bounds.parameters.get(name)
-            if bound is not None and (varied or value is None):
+            if bound is not None and varied:
                 found[name] = self._one((0.5, 2.0), bound)
-            elif value is None and self.free:
-                found[name] = self._one((0.5, 2.0), None)
             elif value is not None and varied and not fixed:
                 found[name] = short(float(value) * self.draw.uniform(*APART))
         return found or None

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from linegraph.elements import Element
+from linegraph.errors import ModelError
 from linegraph.formula import variable_of
 from linegraph.jets import Jet, Jets, lifted
 from linegraph.parameters import names_in, resolver
@@ -45,7 +46,12 @@ class Outputs:
     def values(self) -> Valued:
         """One number for each output."""
         cuts = self.edges.cuts
-        pairs = [self._value(output.value) for output in cuts.model.outputs]
+        pairs = []
+        for output in cuts.model.outputs:
+            try:
+                pairs.append(self._value(output.value))
+            except ModelError as error:
+                raise ModelError(f'output "{output.name}"', error.problem) from None
         values, sizes = (cuts.walk.np.array([x[k] for x in pairs], float) for k in (0, 1))
         return values, sizes
 

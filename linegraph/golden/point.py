@@ -167,11 +167,29 @@ class Point:
     @cached_property
     def motion(self) -> tuple[Valued, Valued]:
         """v̇ and λ of ``M v̇ = Q - h + Jᵀ λ``, ``J v̇ = γ``, λ of least norm where it is not unique."""
-        J = self.walk.np.zeros((0, len(self.v)))
-        right = J[:, 0], J[:, 0]
+        none = self.walk.np.zeros(0)
+        right = self.stabilised if self.walk.tree.closed else (none, none)
+        return self._saddle(self.bodies.mass_matrix, self._rows, self.force, right)
+
+    @cached_property
+    def _rows(self) -> Valued:
+        """J, empty without constraints."""
         if self.walk.tree.closed:
-            J, right = self.closed.jacobian[0], self.stabilised
-        return self._saddle(self.bodies.mass_matrix, J, self.force, right)
+            return self.closed.jacobian
+        none = self.walk.np.zeros((0, len(self.v)))
+        return none, none
+
+    @cached_property
+    def rank(self) -> int:
+        """How many constraints are independent.
+
+        Of J by velocities of unit inertia, each row in units of its directions and lever arms: what is small
+        against these is rounding, whatever the other rows are.
+        """
+        np, (_, of_M), (J, of_J) = self.walk.np, self.bodies.mass_matrix, self._rows
+        across, down = self.scale(of_M, of_J)
+        values = np.linalg.svd(J * across * down[:, None], compute_uv=False)
+        return int((values > DEPENDENT).sum())
 
     @cached_property
     def projected(self) -> Valued:
@@ -179,47 +197,64 @@ class Point:
         np, off = self.walk.np, self.at(self.q, self.v_off)
         zero, v = np.zeros(len(self.v)), np.array(self.v_off)
         rates, of_rates = Constraints(off).rates
-        masses, J = Bodies(off).mass_matrix, self.closed.jacobian[0]
-        (step, size), _ = self._saddle(masses, J, (zero, zero), (-rates, of_rates))
+        masses = Bodies(off).mass_matrix
+        (step, size), _ = self._saddle(masses, self._rows, (zero, zero), (-rates, of_rates))
         return v + step, np.abs(v) + size
 
     def _saddle(
-        self, masses: Valued, J: Array, force: Valued, right: Valued
+        self, masses: Valued, rows: Valued, force: Valued, right: Valued
     ) -> tuple[Valued, Valued]:
         """Both unknowns of ``M x = force + Jᵀ y``, ``J x = right``, y of least norm if not unique."""
         np, n = self.walk.np, len(self.v)
-        (M, of_M), (upper, of_upper), (lower, of_lower) = masses, force, right
+        (M, of_M), (J, of_J) = masses, rows
+        (upper, of_upper), (lower, of_lower) = force, right
         whole, size = np.concatenate([upper, lower]), np.concatenate([of_upper, of_lower])
-        rows = np.block([[M, -J.T], [J, np.zeros((len(J), len(J)))]])
-        scale = self.scale(rows, of_M)
-        scaled, whole, size = rows * scale * scale[:, None], whole * scale, size * scale
-        inverse = np.linalg.pinv(scaled, rcond=1e-10) if len(J) else np.linalg.inv(scaled)
+        scale = np.concatenate(self.scale(of_M, of_J))
+        given = np.block([[M, -J.T], [J, np.zeros((len(J), len(J)))]])
+        scaled, whole, size = given * scale * scale[:, None], whole * scale, size * scale
+        inverse = self._inverse(scaled, n)
         found = inverse @ whole
         found += inverse @ (whole - scaled @ found)
         # first order: how far errors in the rows and on the right carry, into what is not determined too
-        free = np.abs(np.eye(len(rows)) - inverse @ scaled) * bool(len(J))
+        free = np.abs(np.eye(len(scaled)) - inverse @ scaled) * bool(len(J))
         parts = np.abs(inverse) @ (size + np.abs(scaled) @ np.abs(found))
         parts += free @ (np.abs(scaled.T) @ np.abs(inverse.T @ found))
         found, parts = found * scale, parts * scale
         # of least norm: what does nothing along v is none of it, to the last digit
-        left, sizes, _ = np.linalg.svd(J, full_matrices=False)
-        left = left[:, sizes > DEPENDENT * sizes.max(initial=0.0)]
+        left, sizes, _ = np.linalg.svd(J * scale[n:, None] * scale[:n], full_matrices=False)
+        left = left[:, sizes > DEPENDENT]
         lam, of_lam = left @ (left.T @ found[n:]), parts[n:]
         # what a plane mechanism does not need out of its plane is rounding
         of_lam = np.maximum(of_lam, NOISE * of_lam.max(initial=0.0))
         return (found[:n], parts[:n]), (lam, of_lam)
 
-    def scale(self, rows: Any, of_M: Any) -> Any:
+    def _inverse(self, scaled: Any, n: int) -> Any:
+        """A generalised inverse of M and J together, by what J leaves free and what it determines."""
+        np = self.walk.np
+        if len(scaled) == n:
+            return np.linalg.inv(scaled)
+        M, J = scaled[:n, :n], scaled[n:, :n]
+        left, sizes, right = np.linalg.svd(J)
+        rank = int((sizes > DEPENDENT).sum())
+        held, free = right[:rank].T, right[rank:].T
+        across = held / sizes[:rank] @ left[:, :rank].T
+        moved = free @ np.linalg.inv(free.T @ M @ free) @ free.T
+        down = np.eye(n) - M @ moved
+        upper = [moved, across - moved @ M @ across]
+        lower = [-across.T @ down, across.T @ down @ M @ across]
+        return np.block([upper, lower])
+
+    def scale(self, of_M: Any, of_J: Any) -> tuple[Any, Any]:
         """What makes rank decide and not units.
 
-        Velocities are scaled to unit inertia, and all multipliers alike: the least norm stays theirs.
+        Velocities are scaled to unit inertia, and all multipliers alike, by the largest that directions and
+        lever arms make: the least norm stays theirs.
         """
-        np, n = self.walk.np, len(self.v)
-        scale = np.ones(len(rows))
+        np = self.walk.np
         inertia = np.diag(of_M)
-        scale[:n] = 1 / np.sqrt(np.where(inertia > 0, inertia, inertia.max(initial=0.0) or 1.0))
-        scale[n:] = 1 / (np.abs(rows[n:, :n] * scale[:n]).max(initial=0.0) or 1.0)
-        return scale
+        across = 1 / np.sqrt(np.where(inertia > 0, inertia, inertia.max(initial=0.0) or 1.0))
+        down = np.full(len(of_J), 1 / ((of_J * across).max(initial=0.0) or 1.0))
+        return across, down
 
     @cached_property
     def inverse(self) -> Valued:
