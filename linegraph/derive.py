@@ -128,7 +128,7 @@ class Derivation(Face):
     def require_relations(self) -> None:
         """Refuse relations that are no constraints of velocity."""
         if self.model.relations:
-            numeric = self.numeric(t=0.37)
+            numeric = self.numeric(t=self.model.bounds.sometime)
             require_linear(
                 self.model, numeric.tree, numeric.algebra, numeric.parameters, random.Random(0)
             )
@@ -174,7 +174,7 @@ class Derivation(Face):
     def _network_entries(self) -> list[tuple[int, int, float]] | None:
         draw = random.Random(0)
         u = [draw.uniform(0.5, 1) for _ in self.structure.inputs]
-        numeric = self.numeric(t=0.37, u=u)
+        numeric = self.numeric(t=self.model.bounds.sometime, u=u)
         q = [draw.uniform(-1, 1) for _ in numeric.tree.positions]
         numeric.tree.normalise(q)
         v = [draw.uniform(-1, 1) for _ in numeric.tree.velocities]

@@ -146,7 +146,7 @@ def listed(names: Sequence[str]) -> str:
 
 def sample_tree(model: Model, formulation: Formulation) -> KinematicTree:
     """The links in numbers: the parameters' own values where they have some, any time, any inputs."""
-    anywhere = Floats(t=0.37, u=_Anything())
+    anywhere = Floats(t=model.bounds.sometime, u=_Anything())
     values = sample_values(model.parameters.values(), anywhere)
     return kinematic_tree(model, formulation, anywhere, values)
 

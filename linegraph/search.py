@@ -313,9 +313,10 @@ def at_some_time(derivation: Derivation) -> Numeric:
     try:
         return derivation.numeric()
     except ModelError as error:
-        if not error.problem.endswith(NOT_SMOOTH):
+        bounds = derivation.model.bounds
+        if not error.problem.endswith(NOT_SMOOTH) and bounds.t is None:
             raise
-        return derivation.numeric(t=0.37)
+        return derivation.numeric(t=bounds.sometime)
 
 
 def quoted(names: Sequence[str] | Mapping[str, Any]) -> str:

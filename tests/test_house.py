@@ -45,7 +45,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("state_space", "tidy"),
     ("parameters", "program", "rotation", "topology"),
     ("checks", "constants", "elements", "statuses"),
-    ("body", "choices", "sums"),
+    ("body", "bounds", "choices", "sums"),
     ("components",),
     ("constraints", "joints", "network"),
     ("register", "terminals", "words"),

@@ -107,6 +107,7 @@ def stepped(
     v: Sequence[Scalar],
     *,
     u: Sequence[Scalar] | None = None,
+    t: Scalar | None = None,
     parameters: Mapping[str, Scalar] | None = None,
 ) -> Numeric:
     """The numeric reference for a state beside the real one, for inputs and parameters beside theirs.
@@ -116,14 +117,17 @@ def stepped(
         q: coordinates.
         v: velocities.
         u: inputs; those of `numeric` if left out.
+        t: the time; that of `numeric` if left out.
         parameters: values in place of those of `numeric`; what is derived from them is so again.
     """
     given = numeric.algebra.arguments
     tree, values = numeric.tree, numeric.parameters
-    algebra: Any = Complexes(t=given["t"], u=given["u"] if u is None else list(u))
+    algebra: Any = Complexes(
+        t=given["t"] if t is None else t, u=given["u"] if u is None else list(u)
+    )
     derivation = numeric.derivation
     assert derivation is not None
-    if u is not None or parameters is not None:
+    if u is not None or t is not None or parameters is not None:
         known = {**numeric.parameters, **(parameters or {})}
         model = derivation.model
         values = valued(model.parameters.values(), algebra, lambda p: known[p.name])
