@@ -231,7 +231,7 @@ class Cuts:
             names = ChainMap(names, self.acting.exchange.variables())
 
         def y(length: float, rate: float) -> float:
-            def resolve(value: Any, **own: Any) -> Any:
+            def resolve(value: Any, /, **own: Any) -> Any:
                 return resolver(numeric.algebra, ChainMap(own, names))(value)
 
             return float(element.through(numeric.algebra, length, rate, resolve))
