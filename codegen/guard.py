@@ -10,6 +10,7 @@ import math
 from typing import TYPE_CHECKING
 
 from codegen import declare, failures, layout, routines
+from codegen.frames import FUNCTIONS, Definition, Frame
 from linegraph.statuses import NOT_FINITE, NOT_FINITE_INPUT
 
 if TYPE_CHECKING:
@@ -30,7 +31,21 @@ def reads_parameters(module: Module) -> bool:
     )
 
 
-def lines(module: Module, program: Program | Routine) -> list[str]:
+def definition(
+    module: Module, program: Program | Routine, statuses: dict[str, dict[int, str]]
+) -> Definition:
+    """A function that reports a status."""
+    frame = Frame(
+        doubles=sum(math.prod(result.shape) for result in program.results),
+        ints=2,
+        parameters=len(program.arguments) + len(program.results),
+        calls={program.name + declare.CORE, *FUNCTIONS["finite"]},
+    )
+    head = declare.signature(module, program, statuses)
+    return Definition(program.name, head, _lines(module, program), frame)
+
+
+def _lines(module: Module, program: Program | Routine) -> list[str]:
     """The lines of a function that reports a status."""
     macro, prefix = module.name.upper(), module.name
     bad_input, bad_result = (f"{macro}_{x.name}" for x in (NOT_FINITE_INPUT, NOT_FINITE))

@@ -9,7 +9,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
-from codegen import failures, layout, templates
+from codegen import failures, frames, layout, templates
+from codegen.frames import Frame
 from linegraph.program import PREPARED_SUFFIX, Routine
 from linegraph.statuses import NOT_FINITE_INPUT
 
@@ -113,6 +114,21 @@ def body(
         names = (argument.name for argument in routine.arguments)
         lines[:0] = [f"    (void){x};" for x in names if not re.search(rf"\b{x}\b", text)]
     return lines
+
+
+def frame(module: Module, routine: Routine) -> Frame:
+    """What a routine keeps on the stack in C."""
+    shared = [x for x in HELPERS[routine.algorithm] if x != "unit" or quaternions(module)]
+    return frames.of_routine(routine, layout.counts(module), shared)
+
+
+def handed_frame(module: Module, program: Program | Routine) -> Frame:
+    """What a function keeps there that hands its work on."""
+    return Frame(
+        doubles=frames.Counts(layout.counts(module))["NK"],
+        parameters=len(program.arguments) + len(program.results),
+        calls={"prepare", program.handed, "parameters_not_finite"},
+    )
 
 
 def _constants(module: Module, routine: Routine) -> dict[str, str]:

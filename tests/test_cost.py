@@ -23,23 +23,23 @@ from linegraph.reading import read
 MOST = {
     # M and h together, M, h, inverse and forward dynamics when last measured, signs free; forward dynamics
     # by factors calls M and h
-    "panda": (784, 327, 544, 573, 244),
-    "ur5": (285, 102, 207, 270, 408),
-    "solo12": (1417, 525, 1075, 1154, 2388),
-    "anymal": (1467, 579, 1275, 1370, 2633),
-    "talos": (5883, 3050, 3481, 3595, 7869),
+    "panda": (783, 320, 544, 571, 244),
+    "ur5": (285, 98, 207, 266, 392),
+    "solo12": (1398, 496, 1069, 1148, 2328),
+    "anymal": (1449, 539, 1269, 1364, 2581),
+    "talos": (5861, 3009, 3475, 3589, 7792),
 }
 SLOPES_MOST = {
     # inverse_dynamics_derivatives, linearize; CasADi's Jacobians of Pinocchio's rnea and aba take 13589 and
     # 23237 for the Panda, 4702 and 10077 for the UR5
-    "panda": (2558, 4537),
-    "ur5": (871, 1839),
-    "anymal": (4770, 18941),
-    "talos": (21333, 109186),
+    "panda": (2557, 4535),
+    "ur5": (869, 1835),
+    "anymal": (4744, 18913),
+    "talos": (21304, 109148),
 }
-CHAINS_MOST = {10: 2929, 20: 7777, 40: 20427}
-PLANAR_MOST = 2059
-RX90_MOST = 408
+CHAINS_MOST = {10: 2912, 20: 7769, 40: 20419}
+PLANAR_MOST = 2058
+RX90_MOST = 407
 
 
 def chain(links: int) -> Model:

@@ -305,6 +305,23 @@ def test_higher_powers_are_refused_as_that(power: int) -> None:
         simplifier(x, "force")
 
 
+@pytest.mark.parametrize("level", ["fast", "full"])
+def test_a_common_number_is_a_factor(level: str) -> None:
+    """9.81 (a + b) and not 9.81 a + 9.81 b, among other terms, too."""
+    q, p = ANGLES[:2]
+    m, length, c = sympy.symbols("m l c")
+    cases = {
+        9.81 * m * sin(q) + 9.81 * length * sin(p): "9.81*(l*sin(q2) + m*sin(q1))",
+        9.81 * m * sin(q) - 9.81 * length * sin(q): "9.81*(-l + m)*sin(q1)",
+        c * q + 9.81 * m * sin(p) + 9.81 * sin(q): "c*q1 + 9.81*(m*sin(q2) + sin(q1))",
+    }
+    for given, expected in cases.items():
+        found = simplified(given, level)
+        assert str(found) == expected
+        at = {symbol: 0.3 + 0.4 * k for k, symbol in enumerate((q, p, m, length, c))}
+        assert abs(value(found, at) - value(given, at)) < 1e-12
+
+
 # ---- the measures themselves
 
 

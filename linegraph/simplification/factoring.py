@@ -235,6 +235,14 @@ class Writer:
             inner = [_divided(term, k, common) for term in terms]
             outer = [self._factor(f) ** e for f, e in common]
             return sympy.Mul(number(k), *outer, self.nested(inner))
+        alike = self._alike(terms)
+        if alike:
+            rest = [term for term in terms if term not in alike]
+            k = _content(alike)
+            inside = self.nested([_divided(term, k, ()) for term in alike])
+            # sympy would multiply the sum out
+            whole = sympy.Mul(number(k), inside, evaluate=not inside.is_Add)
+            return sympy.Add(whole, self.nested(rest))
         as_product = self._as_product(terms)
         if as_product is not None:
             return as_product
@@ -244,6 +252,17 @@ class Writer:
         having = [term for term in terms if best in term.factors]
         rest = [term for term in terms if best not in term.factors]
         return sympy.Add(self.nested(having), self.nested(rest))
+
+    def _alike(self, terms: Sequence[Term]) -> list[Term]:
+        """Terms with the same float as their number: all, or where no factor is shared the most."""
+        sizes: dict[Number, list[Term]] = {}
+        for term in terms:
+            if isinstance(term.coefficient, float):
+                sizes.setdefault(_rounded(_size(term.coefficient)), []).append(term)
+        most = max(sizes.values(), key=len, default=[])
+        if len(most) < 2 or (len(most) < len(terms) and self._most_shared(terms)):
+            return []
+        return most
 
     def _most_shared(self, terms: Sequence[Term]) -> tuple[Factor, int] | None:
         """The power that most terms have; of equals a sum, then what varies, then the first."""
@@ -307,6 +326,10 @@ def _rounded(k: Number) -> Number:
     return float(f"{k:.{DIGITS}e}") if isinstance(k, float) else k
 
 
+def _size(k: Number) -> Number:
+    return -k if k < 0 else k
+
+
 def _denominator(numbers: Iterable[Number]) -> int:
     """The least common denominator of what is exact."""
     exact = [Fraction(k).denominator for k in numbers if not isinstance(k, float)]
@@ -331,16 +354,17 @@ def _irreducible(terms: Sequence[Term], factor: Factor) -> bool:
 
 
 def _content(terms: Sequence[Term]) -> Number:
-    """A number that all coefficients are multiples of, negative if most of them are; 1 among floats."""
+    """A number that all coefficients are multiples of, negative if most of them are."""
     numbers = [term.coefficient for term in terms]
     return plain(_sign(numbers, ()) * _scale(numbers))
 
 
 def _scale(numbers: Iterable[Number]) -> Number:
-    """The largest number that all are whole multiples of; 1 among floats."""
+    """The largest number that all are whole multiples of; among floats the number that all are, or 1."""
     numbers = list(numbers)
     if any(isinstance(k, float) for k in numbers):
-        return 1
+        alike = len(numbers) > 1 and len({_rounded(_size(k)) for k in numbers}) == 1
+        return _size(numbers[0]) if alike else 1
     below = _denominator(numbers)
     above = reduce(gcd, (abs(int(k * below)) for k in numbers))
     return plain(Fraction(above, below))
