@@ -483,6 +483,27 @@ def test_the_builder_refuses_a_law_whose_x_means_two_things() -> None:
         lg.derive(model)
 
 
+def test_the_builder_refuses_a_component_whose_x_means_two_things() -> None:
+    """Voltage or parameter."""
+    model = lg.Model("m")
+    model.parameter("x", 3.0)
+    model.resistor("R", ("a", "ground"), resistance=1)
+    model.capacitor("C", ("a", "ground"), charge="2*x")
+    with pytest.raises(lg.ModelError, match=r'capacitor "C": "x" is of the component itself here'):
+        lg.derive(model)
+
+
+def test_in_a_joint_called_x_a_transducer_means_its_coordinate() -> None:
+    """A coil in joint x: the force of half L' i² for L = 0.1 + 0.2 x, i = 3 A, is 0.9 N."""
+    model = lg.Model("m", gravity=(0, 0, 0))
+    model.prismatic("x", ("ground", model.body("b", mass=1)), (1, 0, 0), effort=False)
+    model.solenoid("coil", ("a", "ground"), joint="x", inductance="0.1 + 0.2*x")
+    model.current_source("s", ("ground", "a"), current=3)
+    d = lg.derive(model)
+    q, v = [0.4], [0.0] * len(d.structure.velocities)
+    assert abs(d.numeric().bias(q, v)[0]) == pytest.approx(0.9)
+
+
 @pytest.mark.parametrize(
     ("more", "expected"),
     [
