@@ -8,20 +8,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from codegen import layout, prose, templates
 from codegen.declare import block, comment
 from codegen.options import DEFAULT
 from codegen.printer import number
 from codegen.python import literal
+from linegraph.vectors import RETURNED
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping
 
     from codegen.options import Options
     from linegraph.program import Module, Program, Routine
-    from linegraph.vectors import Expected, Vectors
+    from linegraph.vectors import Expected, Then, Vectors
 
 DOUBLE = 1e-11
 """Rounding of a double is 1e-16; sums, solutions and 13 written digits take some hundred times that."""
@@ -46,7 +47,7 @@ def in_c(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
         name=module.name,
         macro=module.name.upper(),
         real=options.real,
-        width=max(24, *(len(x.function) for x in vectors.expected)),
+        width=max(24, *(len(x.label) for x in vectors.expected)),
         states=vectors.states,
         double=number(DOUBLE),
         single=number(SINGLE),
@@ -56,28 +57,59 @@ def in_c(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
             for key, size in given.items()
             if size
         ],
+        parameters=vectors.parameters,
         values=[
             (key, math.prod(v.shape), _lines(x for row in v.rows for x in row), _lines(v.scale))
             for key, v in vectors.values.items()
             if math.prod(v.shape)
         ],
-        functions=[
-            {
-                "name": x.function,
-                "about": comment(x.route),
-                "given": [(key, given[key]) for key in x.given if key != "t"],
-                "call": ", ".join(_arguments_in_c(module, x)),
-                "results": [
-                    (result, key, math.prod(vectors.values[key].shape))
-                    for result, key in zip(_results(module, x), x.results, strict=True)
-                ],
-                "fails": bool(statuses[x.function]),
-            }
-            for x in vectors.expected
-        ],
+        functions=[_called_in_c(module, vectors, x, given, statuses) for x in vectors.expected],
     )
     # a library of Arduino's compiles nothing of this folder by itself
     return {f"{file}/extras/{file}_test.c" if options.arduino else f"{file}_test.c": text}
+
+
+def _called_in_c(
+    module: Module,
+    vectors: Vectors,
+    expected: Expected,
+    given: Mapping[str, int],
+    statuses: Mapping[str, Any],
+) -> dict[str, Any]:
+    """A comparison: what is loaded, the call, what its results and those that follow are compared with."""
+
+    def results(call: Expected | Then) -> list[tuple[str, str, int]]:
+        """Of each result its name, its key and its size; the latter from the function itself."""
+        program = _program(module, call.function)
+        return [
+            (result.name, key, math.prod(result.shape))
+            for result, key in zip(program.results, call.results, strict=True)
+        ]
+
+    keys = [*expected.given, *(key for then in expected.then for key in then.given)]
+    loaded = [k for k in dict.fromkeys(keys) if k != "t" and not k.startswith(RETURNED)]
+    calls: list[Expected | Then] = [expected, *expected.then]
+    return {
+        "label": expected.label,
+        "name": expected.function,
+        "about": comment(expected.route),
+        "given": [(key, given[key]) for key in loaded],
+        "takes_p": any(
+            a.name == "p" for call in calls for a in _program(module, call.function).arguments
+        ),
+        "call": ", ".join(_arguments_in_c(module, expected)),
+        "results": results(expected),
+        "fails": bool(statuses[expected.function]),
+        "then": [
+            {
+                "name": then.function,
+                "call": ", ".join(_arguments_in_c(module, then, f"then_{k}")),
+                "results": [(f"then_{k}_{n}", key, size) for n, key, size in results(then)],
+                "fails": bool(statuses[then.function]),
+            }
+            for k, then in enumerate(expected.then)
+        ],
+    }
 
 
 def in_python(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
@@ -107,39 +139,55 @@ def in_python(module: Module, vectors: Vectors, options: Options) -> dict[str, s
             )
             for key, v in vectors.values.items()
         ],
+        parameters=vectors.parameters,
         functions=[
-            (x.function, _tuple(_keys(module, x)), _tuple(x.results), literal(x.route))
+            (
+                x.label,
+                literal(x.function),
+                _tuple(_keys(module, x)),
+                _tuple(x.results),
+                literal(x.route),
+                [
+                    (literal(y.function), _tuple(_keys(module, y)), _tuple(y.results))
+                    for y in x.then
+                ],
+                _tuple(r.name for r in _program(module, x.function).results),
+            )
             for x in vectors.expected
         ],
     )
     return {f"test_{module.name}.py": text}
 
 
-def _program(module: Module, expected: Expected) -> Program | Routine:
-    return next(p for p in module.programs if p.name == expected.function)
+def _program(module: Module, function: str) -> Program | Routine:
+    return next(p for p in module.programs if p.name == function)
 
 
-def _keys(module: Module, expected: Expected) -> list[str]:
+def _keys(module: Module, call: Expected | Then) -> list[str]:
     """For each argument what stands for it; the parameters are ``p``."""
-    keys = iter(expected.given)
-    return [a.name if a.name == "p" else next(keys) for a in _program(module, expected).arguments]
+    keys = iter(call.given)
+    names = [argument.name for argument in _program(module, call.function).arguments]
+    return [name if name == "p" else next(keys) for name in names]
 
 
-def _results(module: Module, expected: Expected) -> list[str]:
-    return [result.name for result in _program(module, expected).results]
-
-
-def _arguments_in_c(module: Module, expected: Expected) -> list[str]:
-    single = {"p": f"&{module.name}_default_parameters", "t": f"(real){module.name}_given_t[state]"}
-    arguments = [single.get(key) or f"in_{key}" for key in _keys(module, expected)]
-    return [*arguments, *(f"out_{result}" for result in _results(module, expected))]
+def _arguments_in_c(module: Module, call: Expected | Then, prefix: str = "") -> list[str]:
+    single = {"p": "&p", "t": f"(real){module.name}_given_t[state]"}
+    arguments = [
+        single.get(key) or f"out_{key.removeprefix(RETURNED)}"
+        if key.startswith(RETURNED) or key in single
+        else f"in_{key}"
+        for key in _keys(module, call)
+    ]
+    prefix = f"{prefix}_" * bool(prefix)
+    results = [result.name for result in _program(module, call.function).results]
+    return [*arguments, *(f"out_{prefix}{result}" for result in results)]
 
 
 def _about(module: Module, vectors: Vectors, options: Options) -> list[str]:
     """What is compared with what, and what is not, in plain lines."""
     lines = ["Compared are, with where the expected values came from:"]
     for x in vectors.expected:
-        lines += _item(f"{x.function}: {x.route}.")
+        lines += _item(f"{x.label}: {x.route}.")
     if vectors.untested:
         lines += ["", "Not compared are:"]
         for function, why in vectors.untested:
@@ -159,8 +207,9 @@ def _item(text: str) -> list[str]:
     return [f"    {line}" for line in prose.paragraph(text, 4)]
 
 
-def _tuple(names: Sequence[str]) -> str:
-    return f"({', '.join(map(literal, names))}{',' * (len(names) == 1)})"
+def _tuple(names: Iterable[str]) -> str:
+    found = list(map(literal, names))
+    return f"({', '.join(found)}{',' * (len(found) == 1)})"
 
 
 def _lines(entries: Iterable[float]) -> list[str]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from codegen import failures, layout, prose, routines, straight, templates
+from codegen import failures, layout, prose, real, routines, straight, templates
 from codegen.options import DEFAULT
 from codegen.printer import Notation, number, print_program
 from linegraph.functions import ARITY
@@ -43,6 +43,7 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
         helpers=alone,
         guarded=any(isinstance(x, Program) and x.guarded for x in module.programs),
         quaternions=routines.quaternions(module),
+        small=real.TOLERANCES["double"],
         head=_indented(layout.head(module), 0),
         counts=list(layout.counts(module).items()),
         names=[
@@ -194,7 +195,7 @@ def _body(module: Module, program: Program | Routine, notation: Notation) -> lis
     if program.handed:
         return routines.handed(module, program, _DIALECT)
     if isinstance(program, Routine):
-        return routines.body(module, program, _DIALECT)
+        return routines.body(module, program, _DIALECT, real.TOLERANCES["double"])
     lines = []
     for call in program.calls:
         results = ", ".join(result.name for result in call.results)

@@ -14,6 +14,7 @@ from fractions import Fraction
 
 from linegraph.errors import ModelError
 from linegraph.functions import ARITY
+from linegraph.tolerance import ACCURATE, CLOSED, DEPENDENT
 
 NAMES = ("double", "float")
 """The types to choose from."""
@@ -22,13 +23,14 @@ _COARSER = 2.0**29
 """How much coarser the rounding of floats is."""
 
 _DOUBLE = {
-    "rank": "1e-10",
+    "rank": f"{DEPENDENT:g}",
     "pivot": "1e-13",
     "residual": "1e-13",
+    "rounding": "5e-16",
     "step": "1e-14",
     "still": "1e-15",
-    "closed": "1e-9",
-    "nothing": "1e-9",
+    "closed": f"{CLOSED:g}",
+    "accurate": f"{ACCURATE:g}",
     "any": "1e300",
     "large": "1e100",
     "slack": "1e-2",
@@ -37,22 +39,23 @@ _FLOAT = {
     "rank": "1e-5",
     "pivot": "5e-5",
     "residual": "5e-5",
+    "rounding": "2e-7",
     "step": "5e-6",
     "still": "5e-7",
     "closed": "2e-5",
-    "nothing": "1e-5",
+    "accurate": "2e-2",
     "any": "1e30",
     "large": "1e30",
     "slack": "1e-2",
 }
 TOLERANCES = {"double": _DOUBLE, "float": _FLOAT}
-"""What algorithms take for rounding.
+"""What algorithms take for rounding. Positions, velocities and rows of J are pure numbers, see `lengths`.
 
-rank: entries of a scaled matrix that are zero; pivot: of a mass matrix, beside what it was made of; residual:
-beside the size of its terms; step, still: corrections that change nothing any more; closed: a gap of loops
-(m, rad) that is none; nothing: added where all may be zero; any: more than anything; large: what is
-taken for infinite in between, so that all languages agree; slack: the part by
-which redundant constraints may contradict each other.
+rank: entries of J that are zero; pivot: of a mass matrix, beside what it was made of; residual: beside the
+size of its terms; rounding: of a constraint; step, still: corrections that change nothing any more; closed:
+a gap of loops that is none; accurate: the relative error of accelerations that is accepted; any: more than
+anything; large: what is taken for infinite in between, so that all languages agree; slack: the part by which
+redundant constraints may contradict each other.
 """
 
 _FUNCTIONS = sorted({*ARITY, "fabs", "fmax", "fmin"} - {"abs", "max", "min", "sign"})

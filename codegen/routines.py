@@ -20,12 +20,20 @@ if TYPE_CHECKING:
     from linegraph.program import Module, Program
 
 HELPERS = {
-    "constrained_dynamics": ("eliminate", "large", "constrained"),
-    "project": ("eliminate", "large", "norm", "constrained", "unit"),
-    "complete": ("eliminate", "large", "norm", "determined", "unit"),
-    "reduction": ("eliminate", "large", "determined"),
+    "constrained_dynamics": (
+        "eliminate",
+        "pure",
+        "large",
+        "norm",
+        "largest",
+        "constrained",
+        "unit",
+    ),
+    "project": ("eliminate", "pure", "large", "largest", "constrained", "unit"),
+    "complete": ("eliminate", "pure", "large", "largest", "determined", "unit"),
+    "reduction": ("eliminate", "pure", "large", "largest", "determined", "unit"),
     "reduced_equations": (),
-    "linearization": ("eliminate", "large", "constrained", "determined"),
+    "linearization": ("eliminate", "pure", "large", "largest", "constrained", "determined"),
     "after_dynamics": (),
     "rhs": (),
     "newton": ("eliminate", "norm", "rounding"),

@@ -1,5 +1,62 @@
-"""`python -m linegraph`: the same as the command `linegraph`."""
+"""The command `linegraph`, and `python -m linegraph`: the command line, and how a process ends.
 
-from linegraph.cli import main
+Everything else is imported inside `main`, so that an interrupt is one wherever it arrives.
+"""
 
-main(prog_name="linegraph")
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import sys
+
+from linegraph.exits import BROKEN, INTERRUPTED, IO_FAILED
+
+
+def main() -> None:
+    """Run the command line and end the process.
+
+    A reader that leaves, as ``head`` does, ends it by SIGPIPE like any other tool.
+    """
+    if hasattr(signal, "SIGPIPE"):
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    try:
+        from linegraph.cli import run
+
+        status = run()
+        sys.stdout.flush()
+    except KeyboardInterrupt:
+        status = INTERRUPTED
+        _tell("interrupted")
+    except OSError as error:
+        status = IO_FAILED
+        place = error.filename or "standard output"
+        _tell(f"error: cannot write to {place}: {error.strerror or error}")
+    except Exception:
+        import traceback
+
+        status = BROKEN
+        _tell(
+            f"{traceback.format_exc()}error: this is a fault of linegraph: please report the model"
+        )
+    _leave(status)
+
+
+def _tell(text: str) -> None:
+    with contextlib.suppress(OSError):
+        sys.stderr.write(f"{text}\n")
+        sys.stderr.flush()
+
+
+def _leave(status: int) -> None:
+    """End the process; what can no longer be written is not tried again."""
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except OSError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+    sys.exit(status)
+
+
+if __name__ == "__main__":
+    main()

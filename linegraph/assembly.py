@@ -12,7 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.errors import ModelError
 from linegraph.joints import Joint
-from linegraph.search import Search, quoted
+from linegraph.pivoting import free_motions, without_inertia
+from linegraph.regularity import Idle, link_of
+from linegraph.search import Search, least, quoted
+from linegraph.tolerance import DEPENDENT
 
 if TYPE_CHECKING:
     import random
@@ -23,8 +26,12 @@ if TYPE_CHECKING:
 
     Array = Any
 
-DEPENDENT = 1e-8
-"""A singular value of the scaled Jacobian below this fraction of the largest is zero."""
+ROUNDING = 1e-13
+"""A pivot of the mass matrix on the motions allowed that is this part of what it was made of is zero."""
+
+INDEPENDENT = (1e-4, 1e-6)
+"""Velocities determine the others if columns of J are farther from dependent than the first of these that
+some are."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +46,7 @@ class Assembly:
         freedoms: the degrees of freedom: velocities less independent constraints.
         unique: for each constraint whether its multiplier is the only one possible.
         independent: velocities that the others follow from; the first such set in declared order.
+        massless: the joints of motions that the constraints allow and nothing with mass takes part in.
     """
 
     q: list[float]
@@ -48,6 +56,7 @@ class Assembly:
     freedoms: int
     unique: list[bool]
     independent: list[int]
+    massless: tuple[Idle, ...] = ()
 
 
 def assemble(
@@ -87,10 +96,8 @@ def consistent(
     search.close(near)
     beside = search.beside(near, 0.2) or search.beside(near, 0.05)
     q = near if beside is None else beside
-    v = [draw.uniform(-1, 1) for _ in search.tree.velocities]
-    rates = search.np.array(numeric.constraint_rates(q, v), float)
-    J = search.np.array(numeric.constraint_jacobian(q), float).reshape(len(rates), len(v))
-    step = search.np.linalg.lstsq(J, rates, rcond=DEPENDENT)[0]
+    v = [draw.uniform(-1, 1) * float(x) for x in search.of_velocities]
+    step = least(search.jacobian(q), search.rates(q, v)) * search.of_velocities
     return q, [float(x - dx) for x, dx in zip(v, step, strict=True)]
 
 
@@ -135,28 +142,27 @@ class _Judgement:
         unique = [bool(np.abs(left[k]).max(initial=0.0) < 1e-6) for k in range(rows)]
         self._require_consistent(at, J, left)
         independent = self._independent(J, best)
-        massless = [self._massless(place, best) for place in places]
-        if all(massless):
-            raise self._no_inertia(massless[0] or [])
+        motions = [self._massless(place, best) for place in places]
+        massless = self._idle(motions[0]) if all(motions) else ()
         position_rank = self._rank_of(J[: sum(e.holonomic for e in self.equations)])
         place = [float(x) for x in q]
         counts = (best, position_rank, rows - best, self.tree.layout.mechanical - best)
-        return Assembly(place, *counts, unique, independent)
+        return Assembly(place, *counts, unique, independent, massless)
 
     def _independent(self, J: Array, rank: int) -> list[int]:
         """Velocities to keep: those declared last give way as long as the constraints determine them."""
-        np = self.np
-        scale = np.abs(J).max(initial=1e-300)
-        dependent: list[int] = []
-        for k in reversed(range(self.tree.layout.mechanical)):
+        np, count = self.np, self.tree.layout.mechanical
+        for apart in INDEPENDENT:
+            dependent: list[int] = []
+            for k in reversed(range(count)):
+                if len(dependent) == rank:
+                    break
+                columns = J[:, [*dependent, k]]
+                if np.linalg.svd(columns, compute_uv=False).min() > apart:
+                    dependent.append(k)
             if len(dependent) == rank:
-                break
-            columns = J[:, [*dependent, k]] / scale
-            if np.linalg.svd(columns, compute_uv=False).min() > 1e-4:
-                dependent.append(k)
-        if len(dependent) < rank:
-            return []
-        return sorted(set(range(self.tree.layout.mechanical)) - set(dependent))
+                return sorted(set(range(count)) - set(dependent))
+        return []
 
     def _require_consistent(self, q: list[float], J: Array, left: Array) -> None:
         """Refuse prescribed motions that contradict each other."""
@@ -165,9 +171,9 @@ class _Judgement:
         joints = {n for n, end in self.tree.ends.items() if isinstance(end.component, Joint)}
         for t in (self.numeric.t, self.numeric.t + 0.37):
             numeric = self.numeric.at(t)
-            rates = -np.array(numeric.constraint_rates(q, v), float)
+            rates = -self.search.rates(q, v, numeric)
             amiss = np.abs(left.T @ rates)
-            if amiss.max(initial=0.0) > 1e-6 * (1 + np.abs(rates).max(initial=0.0)):
+            if amiss.max(initial=0.0) > 1e-6 * np.abs(rates).max(initial=0.0):
                 worst = left[:, int(amiss.argmax())]
                 names = dict.fromkeys(
                     e.component
@@ -181,35 +187,29 @@ class _Judgement:
                 problem = f"is over-driven: {quoted(whole)} contradict each other; free one of them"
                 raise ModelError(self.search.who(whole[0]), problem)
 
-    def _massless(self, q: list[float], rank: int) -> list[str] | None:
-        """The velocities of a motion that the constraints allow and nothing with mass takes part in."""
-        np = self.np
-        J = self.search.jacobian(q)[:, : self.tree.layout.mechanical]
-        M = np.array(self.numeric.mechanical_mass_matrix(q), float)
-        allowed = np.linalg.svd(J)[2][rank:].T if len(J) else np.eye(len(M))
-        if not allowed.shape[1]:
-            return None
-        values, vectors = np.linalg.eigh(allowed.T @ M @ allowed)
-        if values[0] > 1e-12 * max(np.abs(M).max(), 1e-300):
-            return None
-        motion = np.abs(allowed @ vectors[:, 0])
-        mechanical = self.tree.velocities[: self.tree.layout.mechanical]
-        pairs = zip(mechanical, motion, strict=True)
-        return [quantity.name for quantity, x in pairs if x > 0.1 * motion.max()]
+    def _massless(self, q: list[float], rank: int) -> list[int]:
+        """The velocities in motions that the constraints allow and nothing with mass takes part in."""
+        np, count = self.np, self.tree.layout.mechanical
+        sizes = self.search.of_velocities[:count]
+        M = np.array(self._inertia(q), float) * sizes * sizes[:, None]
+        allowed = free_motions(self.search.jacobian(q)[:, :count], rank)
+        found: set[int] = set()
+        for motion in without_inertia(M, allowed, ROUNDING):
+            found.update(np.flatnonzero(np.abs(motion) > 1e-6 * np.abs(motion).max()).tolist())
+        return sorted(found)
 
-    def _no_inertia(self, names: Sequence[str]) -> ModelError:
-        """What to tell of a motion without inertia: it is one of these velocities together."""
-        places = [quantity.name for quantity in self.tree.velocities]
-        link = next(
-            link
-            for link in self.tree.links
-            if any(freedom.index == places.index(names[0]) for freedom in link.velocities)
-        )
-        problem = (
-            f"moves no inertia that the loops allow to move ({quoted(names)}): the mass matrix is singular "
-            "there. Give the bodies mass and inertia"
-        )
-        return ModelError(f'joint "{link.joint.name}"', problem)
+    def _inertia(self, q: list[float]) -> list[list[float]]:
+        """M of mechanics, what networks add to it where they are defined."""
+        size = self.tree.layout.mechanical
+        try:
+            return [row[:size] for row in self.numeric.mass_matrix(q)[:size]]
+        except (ModelError, ArithmeticError):
+            return self.numeric.mechanical_mass_matrix(q)
+
+    def _idle(self, velocities: Sequence[int]) -> tuple[Idle, ...]:
+        """The joints of these velocities, each once."""
+        links = {link.name: link for link in (link_of(self.tree, k) for k in velocities)}
+        return tuple(Idle("joint", link.joint.name, name) for name, link in links.items())
 
     def _driven_with(self, chord: str) -> list[str]:
         """The prescribed joints in the circuit of a chord."""
@@ -223,5 +223,4 @@ class _Judgement:
         return self._rank_of(self.search.jacobian(q))
 
     def _rank_of(self, J: Array) -> int:
-        values = self.np.linalg.svd(J, compute_uv=False)
-        return int((values > DEPENDENT * values.max(initial=0.0)).sum())
+        return int((self.np.linalg.svd(J, compute_uv=False) > DEPENDENT).sum())

@@ -1,14 +1,12 @@
 """The command line: `linegraph new`, `emit`, `derive`, `graph`, `show`, `check` and the other commands.
 
-The only module that prints. Results go to standard output, messages and progress to standard error.
-Exit status: 0 done, 1 a check has failed, 2 the model or the call is wrong. Heavy modules are imported by
-the command that needs them.
+Results go to standard output, messages and progress to standard error (`cli_output`); nothing else prints.
+Exit statuses are those of `exits`. Heavy modules are imported by the command that needs them.
 """
 
 from __future__ import annotations
 
 import sys
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -22,28 +20,15 @@ from linegraph.cli_options import (
     assignment,
     with_options,
 )
-from linegraph.errors import LinegraphError, SourceErrors
+from linegraph.cli_output import explained, progress, warn
+from linegraph.exits import CHECK_FAILED
+from linegraph.files import is_stream
 from linegraph.version import __version__
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from pathlib import Path
 
     from linegraph.model import Model
-
-WRONG = 2
-
-
-@contextmanager
-def _explained() -> Iterator[None]:
-    """Turn an error of the user's into one message and exit status 2."""
-    try:
-        yield
-    except LinegraphError as error:
-        messages = error.messages() if isinstance(error, SourceErrors) else [str(error)]
-        for message in messages:
-            click.echo(f"{click.style('error:', fg='red', bold=True)} {message}", err=True)
-        sys.exit(WRONG)
-
 
 _about_model = with_options(ABOUT_MODEL)
 
@@ -70,8 +55,23 @@ def main() -> None:
       linegraph emit panda.urdf --frame panda_hand --with center_of_mass --out build
       linegraph derive crane.toml --output crane.html
 
-    Exit status: 0 done; 1 a check has failed; 2 the model or the call is wrong, nothing written.
+    Exit status: 0 done; 1 a check has failed; 2 the model or the call is wrong, nothing written;
+    74 what is written to failed (a full disk, a device); 130 interrupted.
     """
+
+
+def run() -> int:
+    """The exit status of this process's command line; what the system or the user breaks off is raised."""
+    try:
+        found = main.main(prog_name="linegraph", standalone_mode=False)
+    except click.ClickException as error:
+        error.show()
+        return error.exit_code
+    except click.Abort:
+        raise KeyboardInterrupt from None
+    except SystemExit as left:
+        return left.code if isinstance(left.code, int) else int(left.code is not None)
+    return found if isinstance(found, int) else 0
 
 
 @main.command()
@@ -122,17 +122,18 @@ def emit(
     and for each --frame
       frame_NAME_pose, frame_NAME_velocity, frame_NAME_jacobian, frame_NAME_jacobian_dot_v
     """
-    with _explained():
+    with explained():
         from linegraph.emission import emit as write
 
         system = _read(model, base, locks, parameters, snap)
-        with _progress() as tell:
+        with progress() as tell:
             written = write(
                 system,
                 out,
                 languages=languages or None,
                 folded=parameters == "folded",
                 progress=tell,
+                warn=warn,
                 **choices,
             )
         for path in written:
@@ -164,13 +165,13 @@ def derive(
       linegraph derive crane.toml --output crane.html
       linegraph derive crane.toml --output crane.tex --level fast
     """
-    with _explained():
+    with explained():
         from linegraph.derive import derive as derived
         from linegraph.report import format_of, report, save
 
         chosen = format or (format_of(output) if output else "text")
         system = _read(model, base, locks, parameters, snap)
-        with _progress() as tell:
+        with progress() as tell:
             tell("deriving")
             derivation = derived(system)
             folded = parameters == "folded"
@@ -178,7 +179,7 @@ def derive(
         if output is None:
             click.echo(text, nl=False)
         else:
-            click.echo(str(save(output, text)))
+            _wrote(save(output, text))
 
 
 @main.command()
@@ -192,11 +193,11 @@ def trees(
     with each. Printed are operations (M, h and, with loops, J and gamma), velocities, constraints, the
     joints that are cut, and what to write in [formulation] for this tree.
     """
-    with _explained():
+    with explained():
         from linegraph.trees import candidates, table
 
         system = _read(model, base, locks, parameters, snap)
-        with _progress() as tell:
+        with progress() as tell:
             found = candidates(system, tell)
         click.echo(table(found), nl=False)
 
@@ -213,7 +214,7 @@ def parameters(
     added to it, and those without effect. Angles such as 1.5708 keep axes almost, not quite, parallel:
     --snap 1e-4 makes them so.
     """
-    with _explained():
+    with explained():
         from linegraph.derive import derive
 
         derivation = derive(_read(model, base, locks, parameters, snap))
@@ -236,7 +237,7 @@ def assemble(
     The search begins at the joints' start values. Printed are the coordinates, the degrees of freedom and
     how many constraints are redundant.
     """
-    with _explained():
+    with explained():
         from linegraph.derive import derive
         from linegraph.report import assembled
 
@@ -255,7 +256,7 @@ def show(
     Bodies, joints, domains, the system graph, the chosen tree, the coordinates, and the fundamental
     cutset and circuit matrices.
     """
-    with _explained():
+    with explained():
         from linegraph.derive import derive
         from linegraph.report import show as text
 
@@ -282,7 +283,7 @@ def graph(
     branches are bold, chords thin, each with its name. A mechanism is seen face-on where it is planar, at
     the position that `assemble` finds.
     """
-    with _explained():
+    with explained():
         from linegraph.derive import derive
         from linegraph.drawing.files import picture, require_ending, write
 
@@ -293,7 +294,7 @@ def graph(
         if output is None:
             click.echo(content, nl=False)
         else:
-            click.echo(str(write(output, content)))
+            _wrote(write(output, content))
 
 
 @main.command()
@@ -309,10 +310,10 @@ def new(name: str, out: str | None) -> None:
 
     It describes a pendulum on a cart and can be shown and emitted as it is.
     """
-    with _explained():
+    with explained():
         from linegraph.modelfile.starter import write
 
-        click.echo(write(name, out))
+        _wrote(write(name, out))
 
 
 @main.command()
@@ -339,7 +340,7 @@ def check(
     would be emitted with two other routes, and the rate of energy with the power of all that acts.
     Exit status 1 if they differ by more than rounding.
     """
-    with _explained():
+    with explained():
         from linegraph import checking
         from linegraph.derive import derive
 
@@ -348,7 +349,7 @@ def check(
         text = checking.report(derivation, findings, lambda title: click.style(title, bold=True))
         click.echo(text, nl=False)
         if not findings.good:
-            sys.exit(1)
+            sys.exit(CHECK_FAILED)
 
 
 @main.command()
@@ -380,21 +381,11 @@ def _read(
         joint, value = assignment(lock, "--lock", 0.0)
         model.lock(joint, value)
     for warning in model.warnings:
-        click.echo(f"{click.style('warning:', fg='yellow', bold=True)} {warning}", err=True)
+        warn(warning)
     return model
 
 
-@contextmanager
-def _progress() -> Iterator[Callable[[str], None]]:
-    """Show the present stage on standard error while it is a terminal; leave nothing behind."""
-    if not sys.stderr.isatty():
-        yield lambda text: None
-        return
-
-    def tell(text: str) -> None:
-        click.echo(f"\r\x1b[K{text} ...", nl=False, err=True)
-
-    try:
-        yield tell
-    finally:
-        click.echo("\r\x1b[K", nl=False, err=True)
+def _wrote(path: Path) -> None:
+    """Tell of a file; what went into a device or a pipe may be the very output that this would spoil."""
+    if not is_stream(path):
+        click.echo(str(path))

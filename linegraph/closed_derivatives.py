@@ -22,7 +22,9 @@ from typing import TYPE_CHECKING
 from linegraph import tangent
 from linegraph.closed_programs import assembly, independent, routine
 from linegraph.errors import ModelError
+from linegraph.lengths import pure
 from linegraph.program import Program, Result, Routine
+from linegraph.search import at_some_time
 from linegraph.slopes import columns, matrix, of_motion, turned, variables
 from linegraph.statuses import CONTRADICTION, NOT_DETERMINED, SINGULAR_INERTIA, SINGULAR_POSITION
 
@@ -30,7 +32,7 @@ if TYPE_CHECKING:
     from linegraph.shared import Functions
 
 WELL_APART = 1e-4
-"""The least singular value, beside the largest entry, of columns of J that determine something."""
+"""The least singular value of columns of J, in pure numbers, that determine something."""
 
 
 def linearize(f: Functions) -> tuple[Program | Routine, ...]:
@@ -54,7 +56,13 @@ def linearize(f: Functions) -> tuple[Program | Routine, ...]:
         "Linearisation in independent coordinates and velocities, at any state that satisfies the "
         "constraints: small changes follow dx' = A dx + B du with the dx that are listed."
     )
-    calls = ("forward_dynamics", "constrained_equations", "constrained_slopes", "reduction")
+    calls = (
+        "forward_dynamics",
+        "constrained_equations",
+        "constrained_slopes",
+        "reduction",
+        "constraint_sizes",
+    )
     given = ("q", "v", "u")
     statuses = (SINGULAR_POSITION, SINGULAR_INERTIA, CONTRADICTION, NOT_DETERMINED)
     made = routine(f, "linearize", about, given, tuple(results), "linearization", statuses, calls)
@@ -70,14 +78,14 @@ def free_changes(f: Functions) -> list[int]:
     own = [v for _, v in independent(f)]
     others = [k for k in range(f.tree.layout.mechanical) if k not in own]
     count = sum(equation.holonomic for equation in f.equations)
-    rows = f.derivation.numeric().constraint_jacobian(assembly(f).q)[:count]
-    J = numpy.array(rows, float).reshape(count, len(f.v))
-    scale = numpy.abs(J).max(initial=1e-300)
+    numeric = at_some_time(f.derivation)
+    rows = numpy.array(numeric.constraint_jacobian(assembly(f).q), float)
+    J = pure(rows.reshape(len(f.equations), len(f.v)), numeric.sizes)[:count]
     dependent: list[int] = []
     for k in [*reversed(others), *reversed(own)]:
         if len(dependent) == assembly(f).position_rank:
             return sorted({*own, *others} - {*dependent})
-        found = numpy.linalg.svd(J[:, [*dependent, k]] / scale, compute_uv=False)
+        found = numpy.linalg.svd(J[:, [*dependent, k]], compute_uv=False)
         if found.min() > WELL_APART and len(found) == len(dependent) + 1:
             dependent.append(k)
     return []

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 from linegraph import network_programs
 from linegraph.errors import ModelError
 from linegraph.layout import has_plain_rates
+from linegraph.lengths import Given, sizes
 from linegraph.parameters import resolver
 from linegraph.program import Argument, Listing, Program, Quantity, Result, Routine, reads
+from linegraph.search import at_some_time
 from linegraph.statuses import (
     CONTRADICTION,
     NO_VELOCITY,
@@ -55,8 +57,26 @@ def constraints(f: Functions) -> tuple[Program | Routine, ...]:
             (_column("gam", f.chords.bias(), "what J vdot must be"),),
         ),
         _whole(f),
+        _sizes(f),
     ]
     return tuple(programs)
+
+
+def _sizes(f: Functions) -> Program:
+    """What makes J a matrix of pure numbers."""
+    f.dag.label = "lengths of loops"
+    numeric = at_some_time(f.derivation)
+    numbers = Given(numeric.tree, numeric.algebra, numeric.parameters)
+    found = sizes(Given(f.tree, f.dag, f.values), f.equations, numbers)
+    about = (
+        "Sizes that make J a matrix of pure numbers, J_ij of_v_j / of_phi_i: lengths L of the loops (m) for "
+        "forces and translations, 1 for torques and rotations, 0 for relations."
+    )
+    results = (
+        Result("of_phi", (len(f.equations),), tuple(found.constraints), "of constraints", ("NC",)),
+        Result("of_v", (len(f.v),), tuple(found.velocities), "of velocities", ("NV",)),
+    )
+    return f.program("constraint_sizes", about, (), results)
 
 
 def _whole(f: Functions) -> Program:
@@ -103,7 +123,14 @@ def forward_dynamics(f: Functions) -> tuple[Routine, ...]:
             results,
             "constrained_dynamics",
             statuses,
-            ("constrained_equations",),
+            (
+                "constrained_equations",
+                *_phi_calls(f),
+                "constraint_rates",
+                "constraint_bias",
+                "constraint_sizes",
+                "coordinate_rates",
+            ),
         ),
     )
 
@@ -120,7 +147,13 @@ def project(f: Functions) -> tuple[Program | Routine, ...]:
         "Bring q and v onto the constraints by Newton's method, along the directions that take the least "
         "kinetic energy; quaternions get length 1."
     )
-    calls = ("mass_matrix", *_phi_calls(f), "constraint_jacobian", "constraint_rates")
+    calls = (
+        "mass_matrix",
+        *_phi_calls(f),
+        "constraint_jacobian",
+        "constraint_rates",
+        "constraint_sizes",
+    )
     return (
         routine(
             f,
@@ -154,7 +187,13 @@ def reduction(f: Functions) -> tuple[Program | Routine, ...]:
         ),
         "complete",
         (NOT_CLOSED, NOT_DETERMINED),
-        (*_phi_calls(f), "constraint_jacobian", "constraint_rates", "coordinate_rates"),
+        (
+            *_phi_calls(f),
+            "constraint_jacobian",
+            "constraint_rates",
+            "constraint_sizes",
+            "coordinate_rates",
+        ),
     )
     tangent = routine(
         f,
@@ -168,7 +207,14 @@ def reduction(f: Functions) -> tuple[Program | Routine, ...]:
         ),
         "reduction",
         (NOT_DETERMINED,),
-        ("constraint_jacobian", "constraint_bias"),
+        (
+            *_phi_calls(f),
+            "constraint_jacobian",
+            "constraint_rates",
+            "constraint_bias",
+            "constraint_sizes",
+            "coordinate_rates",
+        ),
     )
     reduced = routine(
         f,
@@ -261,35 +307,6 @@ def counts(f: Functions) -> tuple[tuple[str, int], ...]:
     return (("NP", _positions(f)), ("RANK", assembly(f).rank))
 
 
-def remarks(f: Functions) -> tuple[str, ...]:
-    """What the head of a file says of a closed system."""
-    if not f.tree.closed:
-        return ()
-    found = assembly(f)
-    cut = ", ".join(dict.fromkeys(e.component for e in f.equations))
-    text = (
-        f"{len(f.equations)} constraints come from the chords of the tree ({cut}), "
-        "M vdot + h = Q + J^T lam with J vdot = gam; "
-        f"{found.rank} are independent: {freedoms_text(found.freedoms)}."
-    )
-    if f.tree.network is not None:
-        text += " With networks beside them they are not reduced to independent coordinates."
-    if found.redundant:
-        names = [
-            e.multiplier.name for e, one in zip(f.equations, found.unique, strict=True) if not one
-        ]
-        text += (
-            f" {found.redundant} are redundant: the motion is the same without them, but these multipliers, "
-            f"and the reactions that depend on them, are not unique: {', '.join(names)}."
-        )
-    return (text,)
-
-
-def freedoms_text(count: int) -> str:
-    """How many degrees of freedom there are, in words."""
-    return f"{count} degree{'' if count == 1 else 's'} of freedom"
-
-
 def routine(
     f: Functions,
     name: str,
@@ -315,6 +332,8 @@ def routine(
     )
     details = (
         ("quaternions", _quaternions(f)),
+        ("mechanical", f.tree.layout.mechanical),
+        ("baumgarte", f.model.choices.baumgarte is not None),
         ("position_rank", assembly(f).position_rank),
         ("s_at", tuple(q for q, _ in chosen)),
         ("w_at", tuple(v for _, v in chosen)),

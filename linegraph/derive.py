@@ -26,7 +26,7 @@ from linegraph.formulation import Formulation, formulate
 from linegraph.numeric import Numeric
 from linegraph.parameters import Parameter, valued
 from linegraph.register import declared, require_distinct, require_own
-from linegraph.regularity import require_regular
+from linegraph.regularity import Idle, massless, refusal, require_motion, sample_tree
 from linegraph.scope import require_linear
 from linegraph.symbol_names import symbol_names
 from linegraph.transfer import transfer
@@ -128,40 +128,89 @@ class Derivation(Face):
     def require_relations(self) -> None:
         """Refuse relations that are no constraints of velocity."""
         if self.model.relations:
-            numeric = self.numeric(t=0.37)
+            numeric = self.numeric(t=self.model.bounds.sometime)
             require_linear(
                 self.model, numeric.tree, numeric.algebra, numeric.parameters, random.Random(0)
             )
 
-    def require_stores(self) -> None:
-        """Refuse a network whose stores hold nothing at the parameters' own values."""
-        network = self.formulation.network
-        given = all(p.value is not None for p in self.model.parameters.values())
-        if network is None or not network.states or not given:
-            return
+    @property
+    def valued(self) -> bool:
+        """Whether every parameter has a value."""
+        return all(p.value is not None for p in self.model.parameters.values())
+
+    @cached_property
+    def idle(self) -> tuple[Idle, ...]:
+        """Along what nothing is accelerated at the parameters' own values: joints first, then stores.
+
+        Raises:
+            ModelError: a mass or an inertia is negative, or the loops cannot be closed.
+        """
+        if not self.structure.closed:
+            tree = sample_tree(self.model, self.formulation)
+            return massless(tree, self._added) + self._empty_stores
+        joints = self.assembled.massless if self.valued else ()
+        return joints + self._empty_stores
+
+    def no_inverse(self, functions: Sequence[str], *, asked: bool = True) -> ModelError:
+        """What to tell of functions that divide by a singular M, with its place in the model's file."""
+        closed = self.structure.closed
+        return placed(refusal(self.idle, functions, closed=closed, asked=asked), self.model)
+
+    def require_inverse(self, what: str) -> None:
+        """Refuse what divides by M where M is singular.
+
+        Raises:
+            ModelError: names all joints that move no inertia.
+        """
+        if self.idle:
+            raise self.no_inverse([what])
+
+    def _added(self) -> list[tuple[int, int, float]]:
+        """What networks add to M at a random state; nothing where they are not defined there."""
+        if self.formulation.network is None or not self.valued:
+            return []
+        return self._network_entries() or []
+
+    def _network_entries(self) -> list[tuple[int, int, float]] | None:
         draw = random.Random(0)
         u = [draw.uniform(0.5, 1) for _ in self.structure.inputs]
-        numeric = self.numeric(t=0.37, u=u)
+        numeric = self.numeric(t=self.model.bounds.sometime, u=u)
         q = [draw.uniform(-1, 1) for _ in numeric.tree.positions]
         numeric.tree.normalise(q)
         v = [draw.uniform(-1, 1) for _ in numeric.tree.velocities]
-        first, size = numeric.tree.layout.mechanical, len(network.states)
-        rows = [[0.0] * size for _ in range(size)]
         try:
-            for i, j, entry in network_entries(numeric.exchange(q, v), numeric.algebra):
-                if min(i, j) >= first:
-                    rows[i - first][j - first] += entry
+            return [
+                (i, j, float(x))
+                for i, j, x in network_entries(numeric.exchange(q, v), numeric.algebra)
+            ]
         except (ModelError, ArithmeticError):
-            return  # no state like any other: what is wrong there is said at run time
-        place = singular(rows, symmetric=network.symmetric)
-        if place is not None:
-            quantity = network.states[place].quantity
-            problem = (
-                f"{quantity.name} ({quantity.about}) has no rate: what stores it is zero for the parameters' "
-                "values. Leave the component out, or give it a value"
-            )
-            owner = network.owner(network.states[place])
-            raise ModelError(f'{owner.kind} "{owner.name}"', problem)
+            return None  # no state like any other: what is wrong there is said at run time
+
+    @cached_property
+    def _empty_stores(self) -> tuple[Idle, ...]:
+        """The components of networks whose stores hold nothing at the parameters' own values."""
+        network = self.formulation.network
+        if network is None or not network.states or not self.valued:
+            return ()
+        first = self.structure.layout.mechanical
+        left = list(range(len(network.states)))
+        rows = [[0.0] * len(left) for _ in left]
+        for i, j, entry in self._network_entries() or ():
+            if min(i, j) >= first:
+                rows[i - first][j - first] += entry
+        if self._network_entries() is None:
+            return ()
+        found = []
+        while left:
+            part = [[rows[i][j] for j in left] for i in left]
+            place = singular(part, symmetric=network.symmetric)
+            if place is None:
+                break
+            state = network.states[left.pop(place)]
+            owner = network.owner(state)
+            what = f"{state.quantity.name} ({state.quantity.about})"
+            found.append(Idle(owner.kind, owner.name, what))
+        return tuple(found)
 
     @cached_property
     def assembled(self) -> Assembly:
@@ -227,15 +276,12 @@ def derive(model: Model) -> Derivation:
         owners = require_distinct(declared(model), model.places)
         require_own(model, owners, model.places)
         formulation = formulate(model, graph)
-        require_regular(model, formulation)
         derivation = Derivation(model, graph, formulation)
         _ = derivation.symbol_names
-        if derivation.structure.closed and all(
-            p.value is not None for p in model.parameters.values()
-        ):
+        require_motion(model, derivation.structure)
+        if derivation.structure.closed and derivation.valued:
             derivation.require_relations()
-            _ = derivation.assembled
-        derivation.require_stores()
+        _ = derivation.idle
     except ModelError as error:
         raise placed(error, model) from None
     return derivation

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING, Any
 
 from linegraph.derive import derive, placed
@@ -42,6 +43,7 @@ def emit(
     frames: Iterable[str] = (),
     tests: bool = False,
     progress: Callable[[str], None] | None = None,
+    warn: Callable[[str], None] | None = None,
     **options: Any,
 ) -> list[Path]:
     """Derive a model and write its functions as source files.
@@ -57,6 +59,7 @@ def emit(
         frames: bodies, or frames of bodies as ``body.frame``, whose kinematics are to be written.
         tests: write golden vectors, too: programs that check what is written against another route.
         progress: called with a short text before each stage.
+        warn: called with what a reader must know of the files; default a Python warning.
         **options: choices for C: ``trig`` ("libm" or "inline"), ``batch`` (functions of many states),
             ``real`` ("double" or "float"), ``prefix`` (of functions, types and macros), ``cmake``,
             ``arduino`` and ``report``, as `codegen.Options` says them.
@@ -86,6 +89,7 @@ def emit(
         frames=frames,
         tests=tests,
         progress=progress,
+        warn=warn,
         **options,
     )
     return write_all(out, files)
@@ -102,6 +106,7 @@ def render(
     frames: Iterable[str] = (),
     tests: bool = False,
     progress: Callable[[str], None] | None = None,
+    warn: Callable[[str], None] | None = None,
     **options: Any,
 ) -> dict[str, str]:
     """What `emit` writes, as {file name: text}."""
@@ -125,6 +130,8 @@ def render(
     prefix = codegen.naming.identifier(model.name) if name is None else name
     tell("deriving")
     module = module_for(model, prefix, folded=folded, functions=functions, only=only, frames=frames)
+    if module.omitted:
+        (warn or _python_warning)(str(derive(model).no_inverse(module.omitted, asked=False)))
     files: dict[str, str] = {}
     for language in chosen:
         tell(f"writing {language}")
@@ -138,6 +145,10 @@ def render(
                 tell(f"{language} has no golden vectors")
             files |= checks
     return files
+
+
+def _python_warning(text: str) -> None:
+    warnings.warn(text, stacklevel=4)
 
 
 def _several(names: Iterable[str]) -> tuple[str, ...]:

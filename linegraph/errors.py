@@ -4,7 +4,8 @@
     ├── ModelError        the model says something that cannot be (a part, and why)
     │   └── SourceError   the same, with the file and the line that said it
     ├── SourceErrors      all that is wrong with a file, at once
-    └── NameRefused       a name that cannot appear in emitted code
+    ├── NameRefused       a name that cannot appear in emitted code
+    └── DeviceFailed      what is written to failed: a full disk, a pipe without a reader
 
 All carry one complete sentence for the user. A bug raises something else.
 """
@@ -81,3 +82,7 @@ class SourceErrors(LinegraphError):
 
 class NameRefused(LinegraphError):
     """A name that emitted code cannot carry, or two names that become one there."""
+
+
+class DeviceFailed(LinegraphError):
+    """Writing failed for a reason outside of the input: a full disk, a device, a pipe without a reader."""

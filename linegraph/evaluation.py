@@ -100,10 +100,12 @@ def function(derivation: Derivation, what: Any, frames: Iterable[str] = ()) -> F
     only = _maker(what) if named or what in PROGRAMS else ()
     module = module_of(derivation, name, folded=folded, about=(), only=only, frames=named)
     known = [program.name for program in module.programs]
+    if what in module.omitted:
+        raise derivation.no_inverse([what])
     if what not in known:
         frame = "; its frame has to be in frames=(...)" * what.startswith(FRAME_FUNCTIONS)
         raise ModelError(f'function "{what}"', f"is not there; {nearest(what, known)}{frame}")
-    return _loaded(derivation, module, what)
+    return loaded(derivation, module, what)
 
 
 def _maker(what: str) -> tuple[str, ...]:
@@ -140,10 +142,11 @@ def _of_expression(derivation: Derivation, name: str, what: Any) -> Function:
     parameters = parameters_of(derivation)
     time = derivation.model.depends_on_time
     module = Module(name, (), *state, parameters, time, (program,))
-    return _loaded(derivation, module, NAME, single=single)
+    return loaded(derivation, module, NAME, single=single)
 
 
-def _loaded(derivation: Derivation, module: Module, name: str, *, single: bool = False) -> Function:
+def loaded(derivation: Derivation, module: Module, name: str, *, single: bool = False) -> Function:
+    """A function of a module, ready to be called; `single` if it computes one number and no array."""
     (source,) = codegen.render(module, "python").values()
     program = next(p for p in module.programs if p.name == name)
     arguments = tuple(a.name for a in program.arguments if a.name != "p")

@@ -142,6 +142,14 @@ class Exchange:
         """Y of an edge."""
         return self._moving(self.network.variables[edge][1])
 
+    def size(self, edge: str, place: int) -> Scalar:
+        """How large the terms are that X (0) or Y (1) of an edge is the sum of."""
+        return self._moving(self.network.variable_sizes[edge][place])
+
+    def heat(self, component: str) -> Scalar:
+        """The power that a component turns into heat."""
+        return self._moving(self.network.heat[component])
+
     def gains(self) -> dict[str, Scalar]:
         """Of each component what it stores and turns into heat, less what it takes in: zero."""
         return {name: self._moving(x) for name, x in self.network.gains.items()}
@@ -208,6 +216,10 @@ class Exchange:
         if isinstance(self.algebra, Floats):
             return self.solved[place]
         return self.algebra.symbol("loop", place)
+
+    def algebraic_loop(self) -> list[Scalar]:
+        """What is zero in the algebraic loop."""
+        return [self.still(residue) for residue in self.network.loop]
 
     @cached_property
     def solved(self) -> list[float]:

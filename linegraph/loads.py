@@ -169,7 +169,7 @@ class Acting:
         else:
             self._between(element)
 
-    def _resolve(self, value: Any, **names: Scalar) -> Scalar:
+    def _resolve(self, value: Any, /, **names: Scalar) -> Scalar:
         values: Any = self._values
         values = ChainMap(names, values) if names else values
         return resolver(self._algebra, values)(value)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from linegraph.assemblies import add_basement, add_rotor, followers_at, locked
 from linegraph.body import GROUND, MASS_CENTER, Body, Placement, inertia_of, unit
+from linegraph.bounds import Bounded
 from linegraph.checks import finite, plain, require_new, vector
 from linegraph.choices import Choices, chosen
 from linegraph.components import Words
@@ -48,7 +49,7 @@ SNAP = 1e-11
 Acting = TypeVar("Acting", Element, Load)
 
 
-class Model(Shown, Words):
+class Model(Shown, Words, Bounded):
     """A system of components, connected at terminals.
 
     Args:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from linegraph import orthogonality
 from linegraph.algebra import Floats
-from linegraph.closure import Chords
+from linegraph.closure import Chords, equations
+from linegraph.lengths import Given, Sizes, sizes
 from linegraph.loads import Applied, applied
 from linegraph.mass_matrix import mass_matrix
 from linegraph.parameters import resolver
@@ -98,6 +100,12 @@ class Numeric:
         acting = self.applied(q, v, driven=False)
         entries = network_entries(self.exchange(q, v), self.algebra) if a is not None else ()
         return united_inverse_dynamics(self.tree, self.algebra, crossed, entries, a, acting)
+
+    @cached_property
+    def sizes(self) -> Sizes:
+        """What constraints and velocities are measured by."""
+        given = Given(self.tree, self.algebra, self.parameters)
+        return sizes(given, equations(self.tree))
 
     def coordinate_rates(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
         """N(q) v."""

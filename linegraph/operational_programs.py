@@ -242,7 +242,9 @@ def _immobile(f: Functions, frame: NamedFrame, rows: int) -> str:
 
     Named is the first direction that depends on those before it.
     """
-    algebra = Floats(t=0.37, u=[0.1 + 0.07 * i for i in range(len(f.tree.inputs))])
+    algebra = Floats(
+        t=f.model.bounds.sometime, u=[0.1 + 0.07 * i for i in range(len(f.tree.inputs))]
+    )
     tree = sample_tree(f.model, f.derivation.formulation)
     values = sample_values(f.model.parameters.values(), algebra)
     seat = seat_of(f.model, tree, resolver(algebra, values), frame.name)

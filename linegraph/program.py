@@ -183,6 +183,7 @@ class Module:
         time: whether the functions take the time ``t``.
         listings: further quantities of the model's functions.
         counts: further numbers that have a name.
+        omitted: the functions that are left out as they divide by a singular mass matrix.
     """
 
     name: str
@@ -195,6 +196,7 @@ class Module:
     programs: tuple[Program | Routine, ...]
     listings: tuple[Listing, ...] = ()
     counts: tuple[tuple[str, int], ...] = ()
+    omitted: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """Its name and functions."""

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 from linegraph import (
     closed_programs,
+    closed_remarks,
     derivative_programs,
+    division,
     edge_programs,
     kinematic_programs,
     network_programs,
@@ -34,9 +36,10 @@ from linegraph.shared import ARGUMENTS, Functions
 from linegraph.sums import with_sums_collected
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from linegraph.derive import Derivation
+    from linegraph.division import Made
     from linegraph.tips import NamedFrame
     from linegraph.vector import Scalar
 
@@ -72,14 +75,8 @@ def module_of(
     wanted, only, frames = tuple(wanted), tuple(only), tuple(frames)
     asked = _asked(wanted, only, frames)
     functions = Functions(derivation, folded or not parameters, frames, asked)
-    made = _made(functions, [key for key in PROGRAMS if key in asked])
-    for key in (*only, *wanted):
-        if not made[key]:
-            raise ModelError(
-                f'function "{key}"',
-                "is none of this model: it has nothing of the kind"
-                f"{'; name a frame (--frame)' * (key in OF_FRAMES)}",
-            )
+    made, omitted = _made(functions, [key for key in PROGRAMS if key in asked])
+    _require_made(derivation, dict.fromkeys((*only, *wanted)), made)
     chosen = [key for key in PROGRAMS if key in made]
     programs = tuple(program for key in chosen for program in made[key])
     functions.dag.release()
@@ -92,9 +89,10 @@ def module_of(
         name=name,
         about=(
             *about,
-            *closed_programs.remarks(functions),
+            *closed_remarks.remarks(functions),
             *network_programs.remarks(functions),
             *operational_programs.remarks(functions, chosen),
+            *division.remarks(functions, omitted),
         ),
         positions=tree.positions,
         velocities=tree.velocities,
@@ -114,7 +112,25 @@ def module_of(
             *([(COUNT, constants)] if constants else []),
             *derivative_programs.counts(functions, chosen),
         ),
+        omitted=omitted,
     )
+
+
+def _require_made(derivation: Derivation, keys: Iterable[str], made: Mapping[str, Made]) -> None:
+    """Refuse what is asked for by name and is not made.
+
+    Raises:
+        ModelError: some of it divides by M, which is singular; or the model has no such function.
+    """
+    keys = list(keys)
+    divided = [key for key in keys if key not in made]
+    if divided:
+        raise derivation.no_inverse(divided)
+    for key in keys:
+        if not made[key]:
+            frame = "; name a frame (--frame)" * (key in OF_FRAMES)
+            problem = f"is none of this model: it has nothing of the kind{frame}"
+            raise ModelError(f'function "{key}"', problem)
 
 
 def _asked(
@@ -131,28 +147,32 @@ def _asked(
     return asked
 
 
-def _made(functions: Functions, keys: Iterable[str]) -> dict[str, tuple[Program | Routine, ...]]:
-    """What each of some keys of `PROGRAMS` makes, and those that make what these call."""
-    made = {key: PROGRAMS[key](functions) for key in keys}
+def _made(functions: Functions, keys: Iterable[str]) -> tuple[dict[str, Made], tuple[str, ...]]:
+    """What each of some keys of `PROGRAMS` makes, and those that make what these call; and what is left out.
+
+    A key of which nothing is left is none of those made.
+    """
+    keys = list(keys)
+    barred = division.barred(functions)
+    made = {key: PROGRAMS[key](functions) for key in keys if key not in barred}
+    omitted = [key for key in keys if key in barred]
     while True:
         programs = [program for found in made.values() for program in found]
-        called = {name for program in programs for name in _called(program)}
+        called = {name for program in programs for name in division.called(program)}
         missing = called - {program.name for program in programs}
         if not missing:
-            return made
-        others = [key for key in PROGRAMS if key not in made and key not in ON_REQUEST]
+            return made, tuple(dict.fromkeys(omitted))
+        if barred & missing:
+            made, lost = division.without(made, barred)
+            omitted += lost
+            barred |= {*lost, *(key for key in keys if key not in made)}
+            continue
+        others = [key for key in PROGRAMS if key not in made and key not in (*ON_REQUEST, *barred)]
         for key in [key for key in others if key in missing] or others:
             found = PROGRAMS[key](functions)
             if missing & {program.name for program in found}:
                 made[key] = found
                 break
-
-
-def _called(program: Program | Routine) -> tuple[str, ...]:
-    """The functions that a function calls."""
-    if isinstance(program, Routine):
-        return program.uses
-    return tuple(call.program for call in program.calls)
 
 
 def _mass_matrix(f: Functions) -> Program:

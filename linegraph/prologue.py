@@ -48,6 +48,7 @@ PREPARED = (
     "constraint_rates",
     "constraint_bias",
     "constrained_equations",
+    "constraint_sizes",
     "forward_dynamics",
     "coordinate_rates",
     "rhs",

@@ -10,6 +10,8 @@ from linegraph.errors import ModelError
 from linegraph.joints import Joint
 from linegraph.joints.base import BY_INPUT
 from linegraph.layout import NOT_SMOOTH, coordinates
+from linegraph.lengths import of_rows, pure
+from linegraph.tolerance import CLOSED, DEPENDENT
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -21,8 +23,11 @@ if TYPE_CHECKING:
 
 TRIES = 24
 STEPS = 50
-CLOSED = 1e-11
 LARGEST_STEP = 0.6
+"""In rad; of lengths, this part of the loop's own."""
+
+STILL = 1e-14
+"""A gap of this part of a loop's length is no more than rounding: to go on would change nothing."""
 
 
 class Search:
@@ -63,6 +68,19 @@ class Search:
         held = [e for e in self.equations if e.holonomic]
         # what an input prescribes is wherever that input says: any position will do
         self.sought = [k for k, e in enumerate(held) if not self._by_input(e)]
+        self.sizes = self.numeric.sizes
+        self.of_velocities = numpy.array(self.sizes.velocities, float)
+        self.of_positions = self._of_positions()
+
+    def _of_positions(self) -> list[float]:
+        """What the coordinates are measured by: 1, or the length of their loop."""
+        found = [1.0] * len(self.tree.positions)
+        for link in self.tree.links:
+            length = max((self.of_velocities[f.index] for f in link.velocities), default=1.0)
+            for freedom in link.place.positions:
+                if self.tree.positions[freedom.index].unit == "m":
+                    found[freedom.index] = float(length)
+        return found
 
     def _by_input(self, equation: Equation) -> bool:
         """Whether a constraint prescribes a motion that comes from inputs."""
@@ -84,7 +102,7 @@ class Search:
         undefined: ModelError | None = None
         for attempt in range(TRIES):
             spread = 0.0 if attempt == 0 else 0.1 * attempt
-            q = [x + self.draw.uniform(-spread, spread) for x in start]
+            q = self._around(start, spread)
             for k, value in self.held.items():
                 q[k] = value
             try:
@@ -101,6 +119,11 @@ class Search:
         if best is None and undefined is not None:
             raise undefined
         raise self._refusal(best[1] if best else None)
+
+    def _around(self, q: Sequence[float], spread: float) -> list[float]:
+        """A place near another one."""
+        sizes = self.of_positions
+        return [x + self.draw.uniform(-spread, spread) * s for x, s in zip(q, sizes, strict=True)]
 
     def _start(self) -> list[float]:
         """The joints' start values, at rest where there are none."""
@@ -128,16 +151,15 @@ class Search:
                 q[own.index] += q[own.index] - at[0]
 
     def close(self, q: list[float]) -> float:
-        """Move q onto the constraints as far as that goes; the largest violation that remains."""
+        """Move q onto the constraints as far as that goes; the largest gap that remains, in pure numbers."""
         np = self.np
         self.tree.normalise(q)
         phi = self._position(q)
         gap = float(np.abs(phi).max(initial=0.0))
         for _ in range(STEPS):
-            if gap < CLOSED * 1e-3:
+            if gap < STILL:
                 break
-            J = self.jacobian(q)[self.sought]
-            step = -np.linalg.lstsq(J, phi, rcond=1e-10)[0]
+            step = -least(self.jacobian(q)[self.sought], phi)
             largest = float(np.abs(step).max(initial=0.0))
             step *= min(1.0, LARGEST_STEP / max(largest, 1e-300))
             for _ in range(12):
@@ -153,8 +175,8 @@ class Search:
         return gap
 
     def _moved(self, q: list[float], step: Any) -> list[float]:
-        """``q + N(q) step``."""
-        rates = self.numeric.coordinate_rates(q, list(step))
+        """``q + N(q) step``, the step in pure numbers."""
+        rates = self.numeric.coordinate_rates(q, list(step * self.of_velocities))
         moved = [x + dx for x, dx in zip(q, rates, strict=True)]
         for k, value in self.held.items():
             moved[k] = value
@@ -162,12 +184,23 @@ class Search:
         return moved
 
     def _position(self, q: list[float]) -> Any:
-        return self.np.array(self.numeric.constraints(q), float)[self.sought]
+        """The gaps in pure numbers."""
+        np, sizes = self.np, self.sizes.constraints
+        gaps = np.array(self.numeric.constraints(q), float)
+        return (gaps / np.array(sizes[: len(gaps)], float))[self.sought]
+
+    def rates(self, q: list[float], v: list[float], numeric: Numeric | None = None) -> Any:
+        """J v - b, divided by the sizes of the constraints (1/s)."""
+        rates = self.np.array((numeric or self.numeric).constraint_rates(q, v), float)
+        return rates / of_rows(self._rows(q), self.sizes)
+
+    def _rows(self, q: list[float]) -> Any:
+        J = self.np.array(self.numeric.constraint_jacobian(q), float)
+        return J.reshape(len(self.equations), len(self.tree.velocities))
 
     def jacobian(self, q: list[float]) -> Any:
-        """J, held coordinates left out of it."""
-        J = self.np.array(self.numeric.constraint_jacobian(q), float)
-        J = J.reshape(len(self.equations), len(self.tree.velocities))
+        """J in pure numbers, held coordinates left out of it."""
+        J = pure(self._rows(q), self.sizes)
         for link in self.tree.links:
             for at, rate in zip(link.place.positions, link.velocities, strict=False):
                 if at.index in self.held:
@@ -198,7 +231,7 @@ class Search:
 
     def beside(self, q: list[float], spread: float = 0.05) -> list[float] | None:
         """Another place that closes the loops, near the first."""
-        near = [x + self.draw.uniform(-spread, spread) for x in q]
+        near = self._around(q, spread)
         for k, value in self.held.items():
             near[k] = value
         try:
@@ -212,17 +245,50 @@ class Search:
             names = dict.fromkeys(e.component for e in self.equations)
             problem = "are not defined at any position tried; give `start` values near one"
             return ModelError(f"constraints {quoted(names)}", problem)
-        phi = self.np.abs(self._position(q))
-        worst = self.equations[self.sought[int(phi.argmax())]]
-        circuit = self.derivation.circuit_of(worst.component)
+        worst, gap = self._gap(self._nearest(q))
+        circuit = self.derivation.circuit_of(worst)
         held = f" with {quoted([self.tree.positions[k].name for k in self.held])} held" * bool(
             self.held
         )
         problem = (
             f"closes the circuit {' - '.join(circuit)}, which cannot be assembled{held}: a gap of "
-            f"{phi.max():.3g} remains. Check lengths and axes, or give `start` values near a position"
+            f"{gap} remains at least. Check lengths and axes, or give `start` values near a position"
         )
-        return ModelError(self.who(worst.component), problem)
+        return ModelError(self.who(worst), problem)
+
+    def _nearest(self, q: list[float]) -> list[float]:
+        """Where the gaps are least, found by Levenberg's and Marquardt's method from a place nearby."""
+        np, damping = self.np, 1e-3
+        phi = self._position(q)
+        for _ in range(400):
+            J = self.jacobian(q)[self.sought]
+            normal = J.T @ J + damping * np.eye(J.shape[1])
+            moved = self._moved(q, -np.linalg.solve(normal, J.T @ phi))
+            ahead = self._position(moved)
+            if not np.linalg.norm(ahead) < np.linalg.norm(phi):
+                damping *= 4
+                if damping > 1e9:
+                    break
+                continue
+            q, phi, damping = moved, ahead, damping / 3
+        return q
+
+    def _gap(self, q: list[float]) -> tuple[str, str]:
+        """The chord that is farthest open, and how far: a distance, or an angle where that says more."""
+        phi = self._position(q)
+        gaps: dict[tuple[str, bool], list[float]] = {}
+        lengths: dict[str, float] = {}
+        for x, k in zip(phi, self.sought, strict=True):
+            equation = self.equations[k]
+            far = equation.multiplier.unit == "N"
+            gaps.setdefault((equation.component, far), []).append(float(x))
+            if far:
+                lengths[equation.component] = float(self.sizes.constraints[k])
+        (name, far), entries = max(
+            gaps.items(), key=lambda item: float(self.np.hypot.reduce(item[1]))
+        )
+        size = float(self.np.hypot.reduce(entries))
+        return name, f"{size * lengths[name]:.3g} m" if far else f"{size:.3g} rad"
 
     def who(self, name: str) -> str:
         """What messages call a joint or a constraint."""
@@ -233,14 +299,24 @@ class Search:
         return f'{kind} "{name}"'
 
 
+def least(J: Any, right: Any) -> Any:
+    """The x of least norm with J x = right as nearly as can be; J in pure numbers, so that it has a rank."""
+    import numpy as np
+
+    left, values, along = np.linalg.svd(J, full_matrices=False)
+    kept = values > DEPENDENT
+    return along[kept].T @ ((left[:, kept].T @ right) / values[kept])
+
+
 def at_some_time(derivation: Derivation) -> Numeric:
     """The numeric reference at t = 0, or later where motions have no derivatives there."""
     try:
         return derivation.numeric()
     except ModelError as error:
-        if not error.problem.endswith(NOT_SMOOTH):
+        bounds = derivation.model.bounds
+        if not error.problem.endswith(NOT_SMOOTH) and bounds.t is None:
             raise
-        return derivation.numeric(t=0.37)
+        return derivation.numeric(t=bounds.sometime)
 
 
 def quoted(names: Sequence[str] | Mapping[str, Any]) -> str:

@@ -5,17 +5,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import gcd
 from typing import TYPE_CHECKING, Any
 
 import sympy
-from sympy.polys.matrices import DomainMatrix
 
 from linegraph.errors import ModelError
-from linegraph.simplification.plain import quotient
+from linegraph.letters import Letters, Numbers, scaled
+from linegraph.simplification import Simplifier
+from linegraph.simplification.polynomial import Swollen, unit
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
+
+    from linegraph.simplification.numbers import Terms
 
 Expr = Any
 
@@ -69,37 +73,36 @@ class StateSpace:
         return rf"$\displaystyle \dot x = {rates}, \quad x = ({names})$"
 
     @property
+    def halves(self) -> tuple[tuple[Expr, Expr, Expr], tuple[Expr, Expr, Expr]]:
+        """(A, B, E) and (C, D, F)."""
+        return (self.A, self.B, self.E), (self.C, self.D, self.F)
+
+    @property
     def shifted(self) -> StateSpace:
         """The same with states ``x - E u``, in which no derivative of an input is needed but by outputs."""
+        if not any(self.E):
+            return self
+        at = Letters(Simplifier(_named), {})
+
+        def moved(left: Expr, right: Expr) -> Expr:
+            return (left * self.E + right).applyfunc(lambda e: at.written(at.value(e)))
+
         zero = sympy.zeros(*self.E.shape)
-        B = (self.A * self.E + self.B).applyfunc(quotient)
-        D = (self.C * self.E + self.D).applyfunc(quotient)
-        return StateSpace(
-            self.states,
-            self.inputs,
-            self.outputs,
-            self.A,
-            B,
-            self.C,
-            D,
-            zero,
-            self.F,
-            self.defaults,
-        )
+        return replace(self, B=moved(self.A, self.B), D=moved(self.C, self.D), E=zero)
 
     def transfer_function(self, s: Expr = None) -> Expr:
-        """H(s), outputs x inputs: rational functions of s (default the symbol ``s``)."""
-        s = sympy.Symbol("s") if s is None else s
-        matrices = (
-            s * sympy.eye(len(self.states)) - self.A,
-            self.B + s * self.E,
-            self.C,
-            self.D + s * self.F,
-        )
-        # over the field of rational functions, in which every step is cancelled
-        parts = [DomainMatrix.from_Matrix(sympy.nsimplify(m, rational=True)) for m in matrices]
-        inner, right, C, D = (part.to_field() for part in DomainMatrix.unify(*parts))
-        return (C * inner.lu_solve(right) + D).to_Matrix().applyfunc(quotient)
+        """H(s), outputs x inputs: quotients of polynomials in s (default the symbol ``s``).
+
+        Numerator and denominator are collected in s and have no common factor; what all coefficients of one
+        share stands before it. Coefficients are no fractions, and that of the denominator's highest power
+        has more positive terms than negative ones; among floats its largest number is 1.
+
+        Raises:
+            ModelError: it has too many terms.
+        """
+        symbol = s if isinstance(s, sympy.Symbol) else sympy.Symbol("s")
+        found = _Response(self, symbol).written()
+        return found if s is None or s == symbol else found.subs(symbol, s)
 
     def numeric(self, parameters: Mapping[str, float] | None = None) -> tuple[Any, Any, Any, Any]:
         """A, B, C, D as arrays, shifted where need be; parameters in place of the model's own.
@@ -117,7 +120,8 @@ class StateSpace:
         values = {**self.defaults, **(parameters or {})}
         matrices = []
         for matrix in (space.A, space.B, space.C, space.D):
-            found = matrix.subs({sympy.Symbol(name): x for name, x in values.items()})
+            # letters may be symbols with assumptions
+            found = matrix.subs({x: values[x.name] for x in matrix.free_symbols if x.name in values})
             missing = sorted(symbol.name for symbol in found.free_symbols)
             if missing:
                 raise ModelError("state space", f"no value is known of {', '.join(missing)}")
@@ -142,118 +146,89 @@ class StateSpace:
         )
 
 
-def state_space(
-    states: Sequence[Expr],
-    rates: Sequence[Expr],
-    inputs: Sequence[Expr],
-    slopes: Mapping[Expr, Expr],
-    outputs: Mapping[str, Expr],
-    defaults: Mapping[str, float],
-) -> StateSpace:
-    """Read the matrices off expressions.
+class _Response:
+    """C (s I - A)^-1 (B + s E) + D + s F, in letters."""
 
-    Args:
-        states: symbols.
-        rates: their derivatives.
-        inputs: symbols, without derivatives of other inputs.
-        slopes: the symbol of the derivative of each input that has one.
-        outputs: expressions by name.
-        defaults: the parameters' own values.
+    def __init__(self, space: StateSpace, s: Expr) -> None:
+        self.space, self.s = space, s
+        self.simplifier = Simplifier(_named)
+        self.simplifier.ring.budget = self.simplifier.budget
+        self.letters = Letters(self.simplifier, {})
+        self.place = _place(self.letters.value(s))
 
-    Raises:
-        ModelError: something is not linear, depends on the time or has a constant part.
-    """
-    steep = [slopes.get(u, sympy.Dummy()) for u in inputs]
-    variables = [*states, *inputs, *steep]
-    named = {str(x): rate for x, rate in zip(states, rates, strict=True)}
-    parts = []
-    for rows in (named, outputs):
-        matrix = sympy.zeros(len(rows), len(variables))
-        for i, (name, expression) in enumerate(rows.items()):
-            _read(matrix, i, name, expression, variables)
-        parts.append(matrix)
-    n, m = len(states), len(inputs)
-    columns = (slice(0, n), slice(n, n + m), slice(n + m, n + 2 * m))
-    A, B, E = (parts[0][:, c] for c in columns)
-    C, D, F = (parts[1][:, c] for c in columns)
-    names = (tuple(map(str, states)), tuple(map(str, inputs)), tuple(outputs))
-    return StateSpace(*names, A, B, C, D, E, F, defaults)
+    def written(self) -> Expr:
+        """The matrix, held against numbers at random points."""
+        try:
+            found = [[self._collected(x) for x in row] for row in self._solved(self.letters)]
+        except Swollen:
+            problem = "the transfer function has too many terms for a closed form; give parameters numbers"
+            raise ModelError("state space", problem) from None
+        for point in self.simplifier.points:
+            numbers = Numbers(point, {}, self.simplifier.ring)
+            for row, values in zip(found, self._solved(numbers), strict=True):
+                for e, x in zip(row, values, strict=True):
+                    if abs(point.expression(e) - x) > numbers.zero * (1 + abs(x)):
+                        raise AssertionError(f"{e} differs from what was derived: a bug")
+        shape = (len(self.space.outputs), len(self.space.inputs))
+        return sympy.Matrix(*shape, [x for row in found for x in row])
 
-
-def linearised(
-    equations: tuple[Sequence[Expr], Expr, Expr],
-    states: tuple[Sequence[Expr], Sequence[Expr]],
-    at: Mapping[Expr, Expr],
-    inputs: Sequence[Expr],
-    slopes: Mapping[Expr, Expr],
-    outputs: Mapping[str, Expr],
-    defaults: Mapping[str, float],
-) -> StateSpace:
-    """The matrices for small deviations from a point where nothing accelerates.
-
-    Args:
-        equations: q̇, M and Q - h, with ``M v̇ = Q - h``.
-        states: the symbols q and v.
-        at: the value of every state and input.
-        inputs: symbols, without derivatives of other inputs.
-        slopes: the symbol of the derivative of each input that has one.
-        outputs: expressions by name.
-        defaults: the parameters' own values.
-
-    Raises:
-        ModelError: v̇ is not zero there, or the time stands in the equations.
-    """
-    rates, mass, right = equations
-    q, v = states
-    point = {symbol: sympy.sympify(value, strict=True) for symbol, value in at.items()}
-    if sympy.Symbol("t") in (mass.free_symbols | right.free_symbols) - set(point):
-        raise ModelError(
-            "linearise", "the equations depend on the time: no point is an equilibrium"
+    def _solved(self, at: Letters | Numbers) -> Any:
+        """The rows over polynomials or numbers."""
+        space = self.space
+        parts = (space.A, space.B, space.C, space.D, space.E, space.F)
+        A, B, C, D, E, F = ([[at.value(x) for x in row] for row in part.tolist()] for part in parts)
+        s = at.value(self.s)
+        inner = [[s * int(i == j) - x for j, x in enumerate(row)] for i, row in enumerate(A)]
+        left, direct = (
+            [
+                [x + s * dx for x, dx in zip(row, slope, strict=True)]
+                for row, slope in zip(part, steep, strict=True)
+            ]
+            for part, steep in ((B, E), (D, F))
         )
-    for name, residual in zip(v, right.subs(point), strict=True):
-        if not _vanishes(residual):
-            problem = (
-                f"{name} does not stay as it is there: Q - h = {sympy.simplify(residual)}. Give the values "
-                "of an equilibrium, those of inputs too"
-            )
-            raise ModelError("linearise", problem)
-    known = [*q, *v, *inputs, *slopes.values()]
+        return at.solve(inner, left, C, direct)[1]
 
-    def small(expressions: Sequence[Expr]) -> Expr:
-        column = sympy.Matrix(list(expressions))
-        return (column.jacobian(sympy.Matrix(known)).subs(point) * sympy.Matrix(known)).expand()
+    def _collected(self, x: Any) -> Expr:
+        """A quotient, both parts collected in s."""
+        above, below = self.letters.quotient(x)
+        powers = self._powers(below)
+        leading = powers[max(powers)]
+        scale: Any = 1
+        if self.simplifier.ring.inexact:
+            scale = max(abs(k) for k in leading.values())
+        if 2 * sum(k < 0 for k in leading.values()) > len(leading):
+            scale = -scale
+        return self._polynomial(above, scale) / self._polynomial(below, scale)
 
-    accelerations = mass.subs(point).LUsolve(small(right))
-    moved = {name: small([y])[0] for name, y in outputs.items()}
-    changes = [*small(rates), *accelerations]
-    return state_space([*q, *v], changes, inputs, slopes, moved, defaults)
+    def _powers(self, terms: Terms) -> dict[int, Terms]:
+        """The coefficients of the powers of s."""
+        found: dict[int, Terms] = {}
+        for term, k in terms.items():
+            exponent = self.simplifier.ring.exponent(term, self.place)
+            found.setdefault(exponent, {})[term - unit(self.place, exponent)] = k
+        return found
+
+    def _polynomial(self, terms: Terms, scale: Any) -> Expr:
+        """What all coefficients share times a polynomial in s, over a number."""
+        if not terms:
+            return sympy.Integer(0)
+        powers = self._powers(terms)
+        outside = self.letters.shared(list(powers.values()))
+        if self.simplifier.ring.inexact:  # numbers are left to the coefficients
+            outside = scaled(outside, gcd(*map(int, outside.values())))
+        inner = [
+            self.simplifier.of_terms(scaled(self.letters.divided(part, outside), scale)) * self.s**n
+            for n, part in sorted(powers.items(), reverse=True)
+        ]
+        return sympy.Mul(self.simplifier.of_terms(outside), sympy.Add(*inner))
 
 
-def _vanishes(residual: Expr) -> bool:
-    """Whether an expression is zero, floats as far as they are exact."""
-    found = sympy.simplify(residual)
-    if found == 0:
-        return True
-    terms = sympy.Add.make_args(residual)
-    size = sum(abs(term) for term in terms)
-    return bool(found.is_number and size.is_number and abs(found) <= 1e-12 * size)
+def _named(symbol: Any) -> Expr:
+    return sympy.Symbol(str(symbol[1]))
 
 
-def _read(matrix: Expr, i: int, name: str, expression: Expr, variables: Sequence[Expr]) -> None:
-    """One row: the slopes along all variables."""
-    whole = sympy.sympify(expression, strict=True)
-    rest = whole
-    for j, variable in enumerate(variables):
-        slope = quotient(sympy.diff(whole, variable))
-        if slope.free_symbols & set(variables):
-            slope = sympy.simplify(slope)
-        if slope.free_symbols & set(variables):
-            raise ModelError(f'"{name}"', f"is not linear in {variable}: there is no state space")
-        matrix[i, j] = slope
-        rest = rest.subs(variable, 0)
-    rest = quotient(rest)
-    if rest != 0:
-        problem = (
-            f"has a part ({rest}) that is neither of states nor of inputs; make its source an input"
-        )
-        raise ModelError(f'"{name}"', problem)
+def _place(x: Any) -> int:
+    """The generator that a symbol is."""
+    (term,) = x.terms
+    ((place, _),) = x.ring.exponents(term)
+    return place

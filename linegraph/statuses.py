@@ -23,7 +23,9 @@ NOT_FINITE = Status(
     903, "a result would be infinite or not a number: too large, or not defined here", "NOT_FINITE"
 )
 SINGULAR_POSITION = Status(
-    904, "the position is singular: more motions are free here than elsewhere", "SINGULAR_POSITION"
+    904,
+    "the position is singular, or too near to one: more motions are free there than elsewhere",
+    "SINGULAR_POSITION",
 )
 SINGULAR_INERTIA = Status(
     905, "the mass matrix is singular on the motions that the constraints allow", "SINGULAR_INERTIA"
@@ -32,7 +34,9 @@ CONTRADICTION = Status(906, "the constraints contradict each other", "CONTRADICT
 NOT_CLOSED = Status(907, "no position that satisfies the constraints was found", "NOT_CLOSED")
 NO_VELOCITY = Status(908, "the constraints of velocity contradict each other", "NO_VELOCITY")
 NOT_DETERMINED = Status(
-    909, "the independent coordinates do not determine the others here", "NOT_DETERMINED"
+    909,
+    "the independent coordinates do not determine the others here, or not with certainty",
+    "NOT_DETERMINED",
 )
 
 COMMON = (

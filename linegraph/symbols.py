@@ -25,6 +25,7 @@ from linegraph.paper_print import PrintedMatrices, printed_matrices
 from linegraph.parameters import valued
 from linegraph.scope import relations
 from linegraph.simplification import BUDGET, Simplifier
+from linegraph.small_motions import Motion
 from linegraph.symbol_names import MULTIPLIERS
 from linegraph.sympy_walk import Expr, Sympy
 from linegraph.united import exchange_at, network_entries, united_mass_matrix
@@ -69,7 +70,7 @@ class Symbolic:
             budget: how many products of terms a quantity may take.
             progress: told what is being simplified.
         """
-        self._derivation = derivation
+        self.derivation = self._derivation = derivation
         self._model = derivation.model
         self.names = derivation.symbol_names
         self._sympy = Sympy(self.names)
@@ -122,17 +123,12 @@ class Symbolic:
     @cached_property
     def bias(self) -> Expr:
         """h(q, v) as a sympy column Matrix."""
-        rows = orthogonality.inverse_dynamics(
-            self.tree, self.dag, self._arms, applied=self._applied
-        )
-        return self._closed_column("bias", rows)
+        return self._closed_column("bias", self._held)
 
     @cached_property
     def forces(self) -> Expr:
         """Q(q, v, u) as a sympy column Matrix: efforts, and all that inputs drive."""
-        acting = self._acted(driven=True)
-        active = orthogonality.generalised_forces(self.tree, self.dag, self._arms, acting)
-        return self._closed_column("forces", efforts(self.tree, self.dag, self._chords, active))
+        return self._closed_column("forces", self._driving)
 
     def equations(self) -> Equations:
         """The equations of motion, row by row: M v̇ + h = Q + J^T λ, and of constraints J v̇ = γ.
@@ -186,9 +182,10 @@ class Symbolic:
         return self.mass_matrix.LUsolve(right).applyfunc(sympy.simplify)
 
     def require_open(self, what: str) -> None:
-        """Refuse what constraints do not allow."""
+        """Refuse what constraints or a singular mass matrix do not allow."""
         if self.tree.closed:
             raise ModelError(what, "there are constraints; their multipliers have no closed form")
+        self._derivation.require_inverse(what)
 
     @cached_property
     def energy(self) -> tuple[Expr, ...]:
@@ -212,18 +209,8 @@ class Symbolic:
     @cached_property
     def outputs(self) -> dict[str, Expr]:
         """What the model asks for by name; what depends on v̇ has it put in."""
-        found, _ = observed(
-            self._model,
-            self.tree,
-            self.dag,
-            self._parameters,
-            self._chords,
-            self._state,
-            self._scheme,
-        )
-        names = [output.name for output in self._model.outputs]
-        known = set(self.a)
-        expressions = self.simplifier.all(found, "outputs")
+        names, known = list(self._observed), set(self.a)
+        expressions = self.simplifier.all(self._observed.values(), "outputs")
         if any(x.free_symbols & known for x in expressions):
             solved = dict(zip(self.a, self.rates, strict=True))
             expressions = [sympy.simplify(x.subs(solved)) for x in expressions]
@@ -237,6 +224,8 @@ class Symbolic:
     def linearise(self, at: Mapping[Any, Any] | None = None) -> StateSpace:
         """A, B, C, D for small deviations from an equilibrium or a steady motion; see `linear`."""
         return linearise(self, at or {})
+
+    linearize = linearise
 
     @property
     def defaults(self) -> dict[str, float]:
@@ -331,6 +320,60 @@ class Symbolic:
             self._of_dag("a"),
             list(zip(equations(self.tree), multipliers, strict=True)),
         )
+
+    @cached_property
+    def _held(self) -> list[Scalar]:
+        """h."""
+        return orthogonality.inverse_dynamics(
+            self.tree, self.dag, self._arms, applied=self._applied
+        )
+
+    @cached_property
+    def _driving(self) -> list[Scalar]:
+        """Q."""
+        acting = self._acted(driven=True)
+        active = orthogonality.generalised_forces(self.tree, self.dag, self._arms, acting)
+        return efforts(self.tree, self.dag, self._chords, active)
+
+    @cached_property
+    def _observed(self) -> dict[str, Scalar]:
+        """The outputs that the model names."""
+        found, _ = observed(
+            self._model,
+            self.tree,
+            self.dag,
+            self._parameters,
+            self._chords,
+            self._state,
+            self._scheme,
+        )
+        return dict(zip((output.name for output in self._model.outputs), found, strict=True))
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The equations over the DAG, as they are linearised."""
+        closed = self.tree.closed
+        states = zip([*self.q, *self.v], [*self._state[0], *self._state[1]], strict=True)
+        return Motion(
+            self.tree,
+            self.dag,
+            self._mass,
+            [effort - h for effort, h in zip(self._driving, self._held, strict=True)],
+            self._rates,
+            self._chords.jacobian() if closed else [],
+            self._chords.bias() if closed else [],
+            self._chords.rates(self._state[1]) if closed else [],
+            self._chords.position() if closed else [],
+            [] if self._exchange is None else self._exchange.algebraic_loop(),
+            self._observed or {str(name): x for name, x in states},
+            len(self.u),
+        )
+
+    def twin(self) -> Simplifier:
+        """A simplifier like its own that knows nothing yet."""
+        own = self.simplifier
+        units = [[("q", place) for place in unit] for unit in self.tree.quaternions]
+        return Simplifier(self._named, own.level, own.budget, units=units)
 
     @cached_property
     def _applied(self) -> Applied:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from linegraph.choices import ABSOLUTE, ABSOLUTE_ANGLE
-from linegraph.derive import Derivation, derive, variant
+from linegraph.derive import Derivation, derive, placed, variant
 from linegraph.errors import ModelError
 from linegraph.joints import Compound
 from linegraph.program import Program
@@ -61,10 +61,11 @@ def candidates(model: Model, tell: Callable[[str], None] | None = None) -> list[
     """The sensible trees, cheapest first; of equal cost the one the model has, then as found.
 
     Raises:
-        ModelError: the model itself cannot be derived.
+        ModelError: the model itself cannot be derived, or there is no equation of motion in any of them.
     """
     own = derive(model)
     found: dict[tuple[Any, ...], Candidate] = {}
+    refused: ModelError | None = None
     for choices in _choices(model, own):
         if len(found) == MOST:
             break
@@ -73,12 +74,15 @@ def candidates(model: Model, tell: Callable[[str], None] | None = None) -> list[
         twin = variant(model, **choices)
         try:
             derivation = own if _same(own, choices) else derive(twin)
-        except ModelError:
-            continue  # a joint that cannot be cut, or a tree that cannot be assembled
-        tree = derivation.formulation
-        key = (tree.joints, tree.absolute, tuple(tree.level))
-        if key not in found:
-            found[key] = _judged(derivation, choices, derivation is own)
+            tree = derivation.formulation
+            key = (tree.joints, tree.absolute, tuple(tree.level))
+            if key not in found:
+                found[key] = _judged(derivation, choices, derivation is own)
+        except ModelError as error:
+            # a joint that cannot be cut, a tree that cannot be assembled, a law that needs a coordinate
+            refused = refused or error
+    if refused is not None and not found:
+        raise placed(refused, model)
     return sorted(found.values(), key=lambda c: (c.operations, c.coordinates, not c.chosen))
 
 

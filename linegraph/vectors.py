@@ -27,21 +27,46 @@ class Values:
     scale: Row
 
 
+RETURNED = "returned."
+"""How the key of an argument begins that is a result of the function called before."""
+
+
+@dataclass(frozen=True)
+class Then:
+    """A function that is called with what another one has returned.
+
+    Attributes:
+        function: its name.
+        given: for each argument but the parameters its key in `Vectors.given`, or `RETURNED` and the
+            name of a result of the function called before.
+        results: for each result its key in `Vectors.values`.
+    """
+
+    function: str
+    given: tuple[str, ...]
+    results: tuple[str, ...]
+
+
 @dataclass(frozen=True)
 class Expected:
     """What one function must return.
 
     Attributes:
+        label: what the comparison is called: the function's name, or that and what is special.
         function: its name.
         route: where the values came from.
         given: for each argument but the parameters, in order, its key in `Vectors.given`.
-        results: for each result, in order, its key in `Vectors.values`.
+        results: for each result, in order, its key in `Vectors.values`; empty where only what follows from it
+            is compared.
+        then: what else must hold of its results.
     """
 
+    label: str
     function: str
     route: str
     given: tuple[str, ...]
     results: tuple[str, ...]
+    then: tuple[Then, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -50,7 +75,8 @@ class Vectors:
 
     Attributes:
         states: how many there are.
-        given: arguments by name, a row for each state; the time is a row of one.
+        given: arguments by name, a row for each state; the time is a row of one, the parameters one of all.
+        parameters: their names, if functions take them.
         values: results by key.
         expected: what each function is compared with.
         untested: functions without an independent route, and why.
@@ -61,3 +87,4 @@ class Vectors:
     values: Mapping[str, Values]
     expected: tuple[Expected, ...]
     untested: tuple[tuple[str, str], ...]
+    parameters: tuple[str, ...] = ()

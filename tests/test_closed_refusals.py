@@ -91,10 +91,12 @@ def related(rate: str, text: str = LOOP) -> str:
 
 
 def whole(text: str) -> Derivation:
-    """All that a command does with a file."""
+    """All that a command does with a file, forward dynamics among it."""
     model = parse(text.encode(), "m.toml")
+    derivation = derive(model)
+    derivation.require_inverse("forward_dynamics")
     render(model)
-    return derive(model)
+    return derivation
 
 
 SECOND_RAIL = '[prismatic.second]\nbetween = ["ground", "cart"]\naxis = [1, 0, 0]\n'

@@ -789,10 +789,12 @@ CASES = {
 
 
 def whole(text: str) -> Derivation:
-    """All that a command does with a file."""
+    """All that a command does with a file, forward dynamics among it."""
     model = parse(text.encode(), "m.toml")
+    derivation = derive(model)
+    derivation.require_inverse("forward_dynamics")
     render(model)
-    return derive(model)
+    return derivation
 
 
 def lines_of(text: str, tables: tuple[str, ...]) -> set[int]:

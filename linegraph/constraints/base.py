@@ -110,6 +110,10 @@ class Constraint:
         """What may be a function of time: the value or None, and what it is."""
         return ()
 
+    def lengths(self) -> tuple[Any, ...]:
+        """Model values of its own that are lever arms beside those of its ends (m)."""
+        return ()
+
     def equations(self) -> tuple[tuple[Quantity, bool], ...]:
         """For each row its multiplier and whether it has an equation of position."""
         raise NotImplementedError

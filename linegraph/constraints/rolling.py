@@ -51,6 +51,10 @@ class Rolling(Constraint):
         if self.radius == 0 and self.crown == 0:
             raise ModelError(f'rolling "{self.name}"', "has no radius")
 
+    def lengths(self) -> tuple[Any, ...]:
+        """Its radii."""
+        return (self.radius, self.crown)
+
     def equations(self) -> tuple[tuple[Quantity, bool], ...]:
         """Normal, along and across."""
         return tuple(

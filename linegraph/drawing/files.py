@@ -11,7 +11,7 @@ from linegraph.drawing.pictures import graph_scene, whole_scene
 from linegraph.drawing.png import png_bytes
 from linegraph.drawing.svg import svg_text
 from linegraph.errors import LinegraphError
-from linegraph.files import write_all
+from linegraph.files import is_stream, write_file
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -27,8 +27,14 @@ def require_ending(output: str | None) -> None:
     Raises:
         LinegraphError: names the three that can be written.
     """
-    if output is not None and Path(output).suffix.lower() not in ENDINGS:
+    if output is not None and _ending(output) not in ENDINGS:
         raise LinegraphError(f"cannot draw to {output}: the name must end in .svg, .png or .dot")
+
+
+def _ending(output: str) -> str:
+    """The ending of a file's name; of a device or a pipe that has none, as of standard output, SVG's."""
+    ending = Path(output).suffix.lower()
+    return ".svg" if ending not in ENDINGS and is_stream(output) else ending
 
 
 def picture(
@@ -52,7 +58,7 @@ def picture(
         LinegraphError: it cannot be drawn, or what is asked for contradicts itself.
     """
     require_ending(output)
-    ending = ".svg" if output is None else Path(output).suffix.lower()
+    ending = ".svg" if output is None else _ending(output)
     if what == "graph" and hold:
         raise LinegraphError("--set places the mechanism: add --what sketch or --what both")
     if what == "sketch" and subspaces:
@@ -73,6 +79,5 @@ def picture(
 
 
 def write(output: str, content: str | bytes) -> Path:
-    """Write a file whole, or not at all."""
-    path = Path(output)
-    return write_all(path.parent, {path.name: content})[0]
+    """Write a file whole, or not at all; into a device or a pipe as it is."""
+    return write_file(output, content)

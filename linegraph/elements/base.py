@@ -16,16 +16,21 @@ questions in the same order:
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from linegraph.algebra import Algebra
     from linegraph.vector import Scalar
 
-    Resolve = Callable[..., Scalar]
-    """From a model value, and further names such as x and v, to a scalar."""
+
+class Resolve(Protocol):
+    """From a model value, and further names such as x and v, to a scalar.
+
+    The value has no name of its own, so that a law may use any.
+    """
+
+    def __call__(self, value: Any, /, **names: Scalar) -> Scalar:
+        """The scalar of a value."""
 
 
 @dataclass(frozen=True)

@@ -48,27 +48,31 @@ class Bodies:
 
     @cached_property
     def heavy(self) -> list[Heavy]:
-        """Every body that moves, about its mass centre or, where none is given, its origin."""
+        """Every body that moves."""
+        moving = {body for body, (link, _) in self.walk.tree.bodies.items() if link >= 0}
+        model = self.walk.numeric.model
+        assert model is not None
+        return [self.heavy_of(body) for body in model.bodies if body in moving]
+
+    def heavy_of(self, name: str) -> Heavy:
+        """A body about its mass centre or, where none is given, its origin."""
         np, number, resolve = self.walk.np, self.walk.number, self.walk.numeric.resolve
         model = self.walk.numeric.model
         assert model is not None
-        found = []
-        for body in model.bodies.values():
-            link, pose = self.walk.tree.bodies[body.name]
-            if link < 0:
-                continue
-            about: Any = body.center or ZERO
-            about = tuple(number(resolve(x)) for x in about)
-            first = tuple(number(resolve(x)) for x in body.first or ZERO)
-            xx, xy, xz, yy, yz, zz = (number(resolve(x)) for x in body.inertia)
-            moved = self.walk.moved(link, add(pose.at, times(pose.rotation, about)), pose.rotation)
-            turn = moved.rotation
-            inertia = turn @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ turn.T
-            found.append(Heavy(number(resolve(body.mass)), turn @ first, inertia, moved))
-        return found
+        body = model.bodies[name]
+        link, pose = self.walk.tree.bodies[name]
+        about: Any = body.center or ZERO
+        about = tuple(number(resolve(x)) for x in about)
+        first = tuple(number(resolve(x)) for x in body.first or ZERO)
+        xx, xy, xz, yy, yz, zz = (number(resolve(x)) for x in body.inertia)
+        moved = self.walk.moved(link, add(pose.at, times(pose.rotation, about)), pose.rotation)
+        turn = moved.rotation
+        inertia = turn @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ turn.T
+        return Heavy(number(resolve(body.mass)), turn @ first, inertia, moved)
 
     @cached_property
-    def _gravity(self) -> Array:
+    def gravity(self) -> Array:
+        """Acceleration of free fall, in ground axes."""
         return self.walk.np.array([self.walk.number(x) for x in self.walk.tree.gravity])
 
     @cached_property
@@ -112,9 +116,9 @@ class Bodies:
         for body in self.heavy:
             moved, w = body.moved, body.moved.angular[:, -1]
             turned = body.inertia @ w
-            force, torque = self.required(body, moved.pull - self._gravity)
+            force, torque = self.required(body, moved.pull - self.gravity)
             total += moved.linear[:, :-1].T @ force + moved.angular[:, :-1].T @ torque
-            weight = abs(body.mass) * np.linalg.norm(self._gravity) + np.linalg.norm(force)
+            weight = abs(body.mass) * np.linalg.norm(self.gravity) + np.linalg.norm(force)
             spin = np.linalg.norm(torque) + np.linalg.norm(w) * np.linalg.norm(turned)
             size += np.linalg.norm(moved.linear[:, :-1], axis=0) * weight
             size += np.linalg.norm(moved.angular[:, :-1], axis=0) * spin
@@ -165,7 +169,7 @@ class Bodies:
             u, w = moved.linear[:, -1:], moved.angular[:, -1:]
             force, torque = self.needed(body, u, w)
             kinetic += float((u.T @ force + w.T @ torque)[0, 0]) / 2
-            height = self._gravity @ (body.mass * moved.origin + body.first)
+            height = self.gravity @ (body.mass * moved.origin + body.first)
             potential -= float(height)
             size += abs(float(height))
         acting = self.walk.numeric.applied(self.walk.q, self.walk.v, driven=False)

@@ -117,23 +117,52 @@ class Constraints:
     def _seated(self, seat: Seat) -> Moved:
         return self.walk.moved(seat.link, seat.at, seat.rotation)
 
-    @property
+    @cached_property
     def jacobian(self) -> Valued:
-        """J; a row is judged by its largest entry."""
-        J, _, _ = self._constrained
-        largest = self.walk.np.abs(J).max(axis=1, initial=0.0)
-        return J, self.walk.np.repeat(largest, len(self.walk.v)).reshape(J.shape)
+        """J; a row is judged by what its ends would move it without each other: directions and lever arms.
+
+        Where a hinge stands beside another one these cancel, and what is left is rounding.
+        """
+        np, (J, _, _) = self.walk.np, self._constrained
+        largest = np.abs(J).max(axis=1, initial=0.0)
+        apart = [self._apart(equation) for equation in equations(self.walk.tree)]
+        size = np.maximum(largest, np.array(apart).reshape(-1))
+        return J, np.repeat(size, len(self.walk.v)).reshape(J.shape)
+
+    def _apart(self, equation: Equation) -> float:
+        """How far unit velocities would move a row if its ends did not move together."""
+        np = self.walk.np
+        closure = next(
+            (c for c in self.walk.tree.closures if c.component.name == equation.component), None
+        )
+        if closure is None:
+            return 0.0
+        row = self._rows[equation.component][equation.place]
+        f, m = (
+            float(np.linalg.norm([abs(lifted(x).x) for x in part]))
+            for part in (row.force, row.torque)
+        )
+        ends = [self._seated(closure.tail), self._seated(closure.head)]
+        line = float(np.linalg.norm(ends[1].origin - ends[0].origin))
+        shift = turn = 0.0
+        for end in ends:
+            w = np.linalg.norm(end.angular[:, :-1], axis=0)
+            u = np.linalg.norm(end.linear[:, :-1], axis=0)
+            arm = float(np.linalg.norm(end.origin)) + line
+            shift += float((u + w * arm).max(initial=0.0))
+            turn += float(w.max(initial=0.0))
+        return f * shift + m * turn
 
     @property
     def rates(self) -> Valued:
         """J v - b; judged by J for any v as fast."""
-        np, (J, rates, _) = self.walk.np, self._constrained
+        np, (_, rates, _) = self.walk.np, self._constrained
         fastest = np.abs(self.walk.v).max(initial=0.0)
-        return rates, np.abs(J).sum(axis=1) * fastest + np.abs(rates)
+        return rates, self.jacobian[1].sum(axis=1) * fastest + np.abs(rates)
 
     @property
     def bias(self) -> Valued:
         """γ; at speeds v it is of the size of J v², of which much may cancel."""
-        np, (J, _, bias) = self.walk.np, self._constrained
+        np, (_, _, bias) = self.walk.np, self._constrained
         fastest = np.abs(self.walk.v).max(initial=0.0)
-        return bias, np.abs(J).sum(axis=1) * fastest * fastest + np.abs(bias)
+        return bias, self.jacobian[1].sum(axis=1) * fastest * fastest + np.abs(bias)

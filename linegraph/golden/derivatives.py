@@ -160,7 +160,7 @@ class Derivatives:
         """∂v̇ = -M⁻¹ ∂r at the v̇ of the state."""
         np, (M, of_M) = self.point.walk.np, self.point.bodies.mass_matrix
         a, of_a = self.point.motion[0]
-        scale = self.point.scale(M, of_M)
+        scale = self.point.scale(of_M, of_M[:0])[0]
         inverse = np.linalg.inv(M * scale * scale[:, None]) * scale * scale[:, None]
         slopes = np.einsum("ijk,j->ik", by.mass, a) + by.bias - by.forces
         found = -inverse @ slopes

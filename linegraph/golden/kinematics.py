@@ -34,9 +34,10 @@ class Kinematics:
     walk: Walk
     bodies: Bodies
 
-    # -- of a frame: a body, a frame of one, or its mass centre
+    # -- of a frame
 
-    def _frame(self, name: str) -> Moved:
+    def frame(self, name: str) -> Moved:
+        """How it moves: a body, a frame of one, or its mass centre."""
         model, resolve = self.walk.numeric.model, self.walk.numeric.resolve
         assert model is not None
         terminals = model.terminals()
@@ -64,29 +65,29 @@ class Kinematics:
 
     def position(self, frame: str) -> Valued:
         """Its origin."""
-        return _alike(self.walk.np, self._frame(frame).origin)
+        return _alike(self.walk.np, self.frame(frame).origin)
 
     def rotation(self, frame: str) -> Valued:
         """Its axes, in columns."""
-        turn = self._frame(frame).rotation
+        turn = self.frame(frame).rotation
         return turn, self.walk.np.ones((3, 3))
 
     def velocity(self, frame: str) -> Valued:
         """Of its origin, and angular."""
         J, _ = self.jacobian(frame)
-        moved = self._frame(frame)
+        moved = self.frame(frame)
         found = self.walk.np.concatenate([moved.linear[:, -1], moved.angular[:, -1]])
         return self._in_halves(found, self.walk.np.abs(J) @ self.walk.np.abs(self.walk.v))
 
     def jacobian(self, frame: str) -> Valued:
         """The same for every unit velocity; a half column is judged by its length."""
-        moved = self._frame(frame)
+        moved = self.frame(frame)
         return self._columns(moved.linear[:, :-1], moved.angular[:, :-1])
 
     def jacobian_dot_v(self, frame: str) -> Valued:
         """Their rates at v̇ = 0; at speeds v of the size of J v², of which much may cancel."""
         np, v = self.walk.np, self.walk.np.abs(self.walk.v)
-        J, moved = np.abs(self.jacobian(frame)[0]), self._frame(frame)
+        J, moved = np.abs(self.jacobian(frame)[0]), self.frame(frame)
         found = np.concatenate([moved.pull, moved.spin])
         return self._in_halves(found, J @ v * self._turning)
 

@@ -64,7 +64,7 @@ class Operational:
     def _inverse(self) -> Array:
         """M⁻¹."""
         np, (M, of_M) = self.point.walk.np, self._dynamics.mass
-        scale = self.point.scale(M, of_M)
+        scale = self.point.scale(of_M, of_M[:0])[0]
         return np.linalg.inv(M * scale * scale[:, None]) * scale * scale[:, None]
 
     @cached_property

@@ -14,19 +14,22 @@ and to which of them a joint that follows adds, is part of what pi means.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from linegraph.components.forces import forces_of
 from linegraph.elements import Damper, Friction
 from linegraph.golden.bodies import NOISE, Heavy
 from linegraph.loads import depends_on_inputs
 from linegraph.parameters import names_in
+from linegraph.residues import CONSTANT
 from linegraph.standard_parameters import MOMENTS, axes, homes, led_by
 from linegraph.vector import ZERO
 
 if TYPE_CHECKING:
     from linegraph.elements import Element
+    from linegraph.exchange import Exchange, Motion
     from linegraph.golden.bodies import Bodies
     from linegraph.golden.walk import Moved, Valued, Walk
     from linegraph.standard_parameters import Axis
@@ -39,7 +42,7 @@ UPPER = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
 
 @dataclass(frozen=True)
 class Parameters:
-    """Standard parameters at a state, of a model without networks.
+    """Standard parameters at a state.
 
     Attributes:
         walk: how everything moves there.
@@ -111,9 +114,10 @@ class Parameters:
         values = [x for found, _ in moments for x in found]
         sizes = [x for _, found in moments for x in found]
         damping, friction = self._worn()
+        rotors = self._rotors()
         for axis in self._axes:
-            values += [damping[axis.joint], friction[axis.joint], 0.0]
-            sizes += [damping[axis.joint], friction[axis.joint], 0.0]
+            values += [damping[axis.joint], friction[axis.joint], rotors[axis.joint]]
+            sizes += [damping[axis.joint], friction[axis.joint], rotors[axis.joint]]
         return np.array(values), np.abs(sizes)
 
     def _moments(self) -> list[tuple[list[float], list[float]]]:
@@ -177,16 +181,49 @@ class Parameters:
                 damping[axis.joint] += ratio**2 * float(resolve(element.viscous))
         return damping, friction
 
+    def _rotors(self) -> dict[str, float]:
+        """By joint the inertia of what networks turn with it, as far as it is constant: from their energy.
+
+        With one edge in mechanics moving at w, and all else at rest, E = J w² / 2 and nothing in w alone.
+        """
+        walk, model = self.walk, self.walk.numeric.model
+        known = {axis.joint: axis for axis in self._axes}
+        found = dict.fromkeys(known, 0.0)
+        at = walk.numeric.exchange(walk.q, [0.0] * len(walk.v))
+        if at is None or model is None:
+            return found
+        joints = {e.name: e.joint for e in forces_of(model.components)}
+        for k, port in enumerate(at.network.ports):
+            entry = at.network.mass.get(2 * (len(at.network.states) + k,))
+            joint = joints[port.name]
+            seat = None if joint is None else self._led(known, joint)
+            if entry is None or seat is None or not self._constant(at, entry):
+                continue
+            energies = [float(_moving(at, port.name, w).energy()) for w in (1.0, -1.0, 0.0)]
+            axis, ratio = seat
+            found[axis.joint] += ratio**2 * (energies[0] + energies[1] - 2 * energies[2])
+        return found
+
+    @staticmethod
+    def _constant(at: Exchange, entry: Any) -> bool:
+        """Whether an inertia depends on parameters alone: of others it is no parameter of the joint."""
+        support = at.network.laws.calculus.support(entry)
+        return {symbol[0] for symbol in support} <= {"p", CONSTANT}
+
     def _seat(self, known: dict[str, Axis], element: Element) -> tuple[Axis, float] | None:
         """The joint whose parameters an element adds to, and how much faster its own joint turns."""
-        if element.joint in known:
-            return known[element.joint], 1.0
         assert element.joint is not None
-        found = led_by(self.walk.tree, known, element.joint)
+        return self._led(known, element.joint)
+
+    def _led(self, known: dict[str, Axis], joint: str) -> tuple[Axis, float] | None:
+        """A joint that has parameters, or the one that it follows and how much faster it is."""
+        if joint in known:
+            return known[joint], 1.0
+        found = led_by(self.walk.tree, known, joint)
         if found is None:
             return None
         # by how fast both are, not by what the coupling says
-        (own, _), (other, _) = (self.walk.along(x) for x in (element.joint, found[0].joint))
+        (own, _), (other, _) = (self.walk.along(x) for x in (joint, found[0].joint))
         place = int(self.walk.np.argmax(self.walk.np.abs(other[:-1])))
         return found[0], float(own[place] / other[place])
 
@@ -196,3 +233,12 @@ class Parameters:
         np = self.walk.np
         (Y, of_Y), (values, _), (tau, size) = self.regressor, self.values, self.tau
         return tau - Y @ values, size + of_Y @ np.abs(values)
+
+
+def _moving(at: Exchange, port: str, w: float) -> Exchange:
+    """The networks with one edge in mechanics moving at w, all others and all states at rest."""
+
+    def motion(name: str) -> Motion:
+        return replace(at.motion(name), w=w if name == port else 0.0)
+
+    return replace(at, motion=motion, v=[0.0] * len(at.v), _motions={})

@@ -6,24 +6,29 @@ accelerations is NumPy's.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from linegraph.assembly import DEPENDENT
 from linegraph.closure import equations
 from linegraph.golden.bodies import NOISE, Bodies
 from linegraph.golden.constraints import Constraints
+from linegraph.golden.cuts import Cuts
 from linegraph.golden.derivatives import Derivatives
+from linegraph.golden.edges import Edges
 from linegraph.golden.kinematics import Kinematics
+from linegraph.golden.outputs import Outputs
 from linegraph.golden.parameters import Parameters
 from linegraph.golden.walk import Walk
+from linegraph.tolerance import DEPENDENT
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from linegraph.derive import Derivation
     from linegraph.golden.walk import Valued
+
+    Array = Any
 
 
 class Kept(NamedTuple):
@@ -48,6 +53,8 @@ class Point:
         q, v, a: the state and accelerations, which are any.
         q_off, v_off: coordinates beside q that close no loop, and velocities that need not be allowed.
         kept: what is independent.
+        p: values of parameters that are not the model's own.
+        lam: multipliers, which are any.
     """
 
     derivation: Derivation
@@ -59,6 +66,8 @@ class Point:
     q_off: list[float]
     v_off: list[float]
     kept: Kept = NOTHING
+    p: Mapping[str, float] = field(default_factory=dict)
+    lam: list[float] = field(default_factory=list)
 
     @property
     def s(self) -> list[float]:
@@ -83,7 +92,7 @@ class Point:
 
     def at(self, q: Sequence[float], v: Sequence[float]) -> Walk:
         """How everything moves at a state."""
-        return Walk(self.derivation.numeric(None, self.t, self.u), q, v)
+        return Walk(self.derivation.numeric(self.p, self.t, self.u), q, v)
 
     @cached_property
     def walk(self) -> Walk:
@@ -116,6 +125,27 @@ class Point:
         return Parameters(self.walk, self.bodies, self.walk.np.array(self.a), self.inverse)
 
     @cached_property
+    def edges(self) -> Edges:
+        """Every edge, under the inputs."""
+        return self._edges(*self.motion)
+
+    @cached_property
+    def edges_at(self) -> Edges:
+        """Every edge, at any accelerations and multipliers."""
+        np = self.walk.np
+        given = (np.array(x, float) for x in (self.a, self.lam))
+        a, lam = ((x, np.zeros(len(x))) for x in given)
+        return self._edges(a, lam)
+
+    def _edges(self, a: Valued, lam: Valued) -> Edges:
+        return Edges(Cuts(self.derivation, self.walk, self.bodies, self.kinematics, a, lam))
+
+    @cached_property
+    def outputs(self) -> Valued:
+        """What the model asks for by name."""
+        return Outputs(self.edges).values
+
+    @cached_property
     def force(self) -> Valued:
         """Q - h."""
         (Q, of_Q), (h, of_h) = self.bodies.forces, self.bodies.bias
@@ -137,43 +167,94 @@ class Point:
     @cached_property
     def motion(self) -> tuple[Valued, Valued]:
         """v̇ and λ of ``M v̇ = Q - h + Jᵀ λ``, ``J v̇ = γ``, λ of least norm where it is not unique."""
-        np, n = self.walk.np, len(self.v)
-        (M, of_M), (force, of_force) = self.bodies.mass_matrix, self.force
-        J = np.zeros((0, n))
-        right, size = force, of_force
+        none = self.walk.np.zeros(0)
+        right = self.stabilised if self.walk.tree.closed else (none, none)
+        return self._saddle(self.bodies.mass_matrix, self._rows, self.force, right)
+
+    @cached_property
+    def _rows(self) -> Valued:
+        """J, empty without constraints."""
         if self.walk.tree.closed:
-            J, (bias, of_bias) = self.closed.jacobian[0], self.stabilised
-            right, size = np.concatenate([force, bias]), np.concatenate([of_force, of_bias])
-        rows = np.block([[M, -J.T], [J, np.zeros((len(J), len(J)))]])
-        scale = self.scale(rows, of_M)
-        scaled, right, size = rows * scale * scale[:, None], right * scale, size * scale
-        inverse = np.linalg.pinv(scaled, rcond=1e-10) if len(J) else np.linalg.inv(scaled)
-        found = inverse @ right
-        found += inverse @ (right - scaled @ found)
+            return self.closed.jacobian
+        none = self.walk.np.zeros((0, len(self.v)))
+        return none, none
+
+    @cached_property
+    def rank(self) -> int:
+        """How many constraints are independent.
+
+        Of J by velocities of unit inertia, each row in units of its directions and lever arms: what is small
+        against these is rounding, whatever the other rows are.
+        """
+        np, (_, of_M), (J, of_J) = self.walk.np, self.bodies.mass_matrix, self._rows
+        across, down = self.scale(of_M, of_J)
+        values = np.linalg.svd(J * across * down[:, None], compute_uv=False)
+        return int((values > DEPENDENT).sum())
+
+    @cached_property
+    def projected(self) -> Valued:
+        """Velocities that obey the constraints: from any, by the change of least kinetic energy."""
+        np, off = self.walk.np, self.at(self.q, self.v_off)
+        zero, v = np.zeros(len(self.v)), np.array(self.v_off)
+        rates, of_rates = Constraints(off).rates
+        masses = Bodies(off).mass_matrix
+        (step, size), _ = self._saddle(masses, self._rows, (zero, zero), (-rates, of_rates))
+        return v + step, np.abs(v) + size
+
+    def _saddle(
+        self, masses: Valued, rows: Valued, force: Valued, right: Valued
+    ) -> tuple[Valued, Valued]:
+        """Both unknowns of ``M x = force + Jᵀ y``, ``J x = right``, y of least norm if not unique."""
+        np, n = self.walk.np, len(self.v)
+        (M, of_M), (J, of_J) = masses, rows
+        (upper, of_upper), (lower, of_lower) = force, right
+        whole, size = np.concatenate([upper, lower]), np.concatenate([of_upper, of_lower])
+        scale = np.concatenate(self.scale(of_M, of_J))
+        given = np.block([[M, -J.T], [J, np.zeros((len(J), len(J)))]])
+        scaled, whole, size = given * scale * scale[:, None], whole * scale, size * scale
+        inverse = self._inverse(scaled, n)
+        found = inverse @ whole
+        found += inverse @ (whole - scaled @ found)
         # first order: how far errors in the rows and on the right carry, into what is not determined too
-        free = np.abs(np.eye(len(rows)) - inverse @ scaled) * bool(len(J))
+        free = np.abs(np.eye(len(scaled)) - inverse @ scaled) * bool(len(J))
         parts = np.abs(inverse) @ (size + np.abs(scaled) @ np.abs(found))
         parts += free @ (np.abs(scaled.T) @ np.abs(inverse.T @ found))
         found, parts = found * scale, parts * scale
         # of least norm: what does nothing along v is none of it, to the last digit
-        left, sizes, _ = np.linalg.svd(J, full_matrices=False)
-        left = left[:, sizes > DEPENDENT * sizes.max(initial=0.0)]
+        left, sizes, _ = np.linalg.svd(J * scale[n:, None] * scale[:n], full_matrices=False)
+        left = left[:, sizes > DEPENDENT]
         lam, of_lam = left @ (left.T @ found[n:]), parts[n:]
         # what a plane mechanism does not need out of its plane is rounding
         of_lam = np.maximum(of_lam, NOISE * of_lam.max(initial=0.0))
         return (found[:n], parts[:n]), (lam, of_lam)
 
-    def scale(self, rows: Any, of_M: Any) -> Any:
+    def _inverse(self, scaled: Any, n: int) -> Any:
+        """A generalised inverse of M and J together, by what J leaves free and what it determines."""
+        np = self.walk.np
+        if len(scaled) == n:
+            return np.linalg.inv(scaled)
+        M, J = scaled[:n, :n], scaled[n:, :n]
+        left, sizes, right = np.linalg.svd(J)
+        rank = int((sizes > DEPENDENT).sum())
+        held, free = right[:rank].T, right[rank:].T
+        across = held / sizes[:rank] @ left[:, :rank].T
+        moved = free @ np.linalg.inv(free.T @ M @ free) @ free.T
+        down = np.eye(n) - M @ moved
+        upper = [moved, across - moved @ M @ across]
+        lower = [-across.T @ down, across.T @ down @ M @ across]
+        return np.block([upper, lower])
+
+    def scale(self, of_M: Any, of_J: Any) -> tuple[Any, Any]:
         """What makes rank decide and not units.
 
-        Velocities are scaled to unit inertia, and all multipliers alike: the least norm stays theirs.
+        Velocities are scaled to unit inertia, and all multipliers alike, by the largest that directions and
+        lever arms make: the least norm stays theirs.
         """
-        np, n = self.walk.np, len(self.v)
-        scale = np.ones(len(rows))
+        np = self.walk.np
         inertia = np.diag(of_M)
-        scale[:n] = 1 / np.sqrt(np.where(inertia > 0, inertia, inertia.max(initial=0.0) or 1.0))
-        scale[n:] = 1 / (np.abs(rows[n:, :n] * scale[:n]).max(initial=0.0) or 1.0)
-        return scale
+        across = 1 / np.sqrt(np.where(inertia > 0, inertia, inertia.max(initial=0.0) or 1.0))
+        down = np.full(len(of_J), 1 / ((of_J * across).max(initial=0.0) or 1.0))
+        return across, down
 
     @cached_property
     def inverse(self) -> Valued:

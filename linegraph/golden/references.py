@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.golden.constraints import Constraints
 from linegraph.golden.operational import Operational
+from linegraph.vectors import RETURNED
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -22,7 +23,22 @@ SOLVED = f"{NEWTON_EULER}; solved by NumPy with pivots"
 ROWS = "the constraints, differentiated along the motion of the bodies"
 BESIDE = f"{NEWTON_EULER}, calculated a complex step beside the state"
 PLACES = "where the bodies are, differentiated along the motion"
+CUT = "each joint cut, Newton's and Euler's equations of all bodies beyond"
 MOMENTA = "the momentum of every body"
+
+
+class After(NamedTuple):
+    """A function that is called with what another one has returned.
+
+    Attributes:
+        function: its name.
+        results: what gives each of its results, by name.
+        given: arguments that are not those of the same name, by name: `RETURNED` and a result's name.
+    """
+
+    function: str
+    results: Mapping[str, Callable[[Point], Valued]]
+    given: Mapping[str, str]
 
 
 class Reference(NamedTuple):
@@ -30,13 +46,17 @@ class Reference(NamedTuple):
 
     Attributes:
         route: in words.
-        results: what gives each result, by its name.
+        results: what gives each result, by its name; a result that is not here is not compared itself.
         given: arguments that are not those of the same name, by name.
+        function: its name, where the key in the register is another.
+        then: what else must hold of its results.
     """
 
     route: str
     results: Mapping[str, Callable[[Point], Valued]]
     given: Mapping[str, str] = {}
+    function: str = ""
+    then: tuple[After, ...] = ()
 
 
 def _M(point: Point) -> Valued:
@@ -194,6 +214,54 @@ def _rest_of_tau(point: Point) -> Valued:
     return point.parameters.rest
 
 
+def _R(point: Point) -> Valued:
+    return point.edges.reactions
+
+
+def _R_at(point: Point) -> Valued:
+    return point.edges_at.reactions
+
+
+def _X(point: Point) -> Valued:
+    dynamic = point.derivation.formulation.network is not None
+    return (point.edges if dynamic else point.edges_at).across
+
+
+def _D(point: Point) -> Valued:
+    return point.edges.drives
+
+
+def _P(point: Point) -> Valued:
+    return point.edges.powers
+
+
+def _sums(point: Point) -> Valued:
+    return point.edges.sums
+
+
+def _y(point: Point) -> Valued:
+    return point.outputs
+
+
+def _v_kept(point: Point) -> Valued:
+    v = point.walk.np.array(point.v)
+    return v, abs(v) + point.projected[1]
+
+
+def _v_projected(point: Point) -> Valued:
+    return point.projected
+
+
+def _no_gap(point: Point) -> Valued:
+    value, size = point.closed.position
+    return 0 * value, size
+
+
+def _no_slip(point: Point) -> Valued:
+    value, size = point.closed.rates
+    return 0 * value, size
+
+
 REFERENCES: dict[str, Reference] = {
     "mass_matrix": Reference(NEWTON_EULER, {"M": _M}),
     "bias": Reference(NEWTON_EULER, {"h": _h}),
@@ -212,6 +280,35 @@ REFERENCES: dict[str, Reference] = {
     "coordinate_rates": Reference("the algebra of quaternions", {"qdot": _qdot}),
     "energy": Reference("masses, velocities and heights of the bodies", {"E": _E}),
     "rhs": Reference(SOLVED, {"xdot": _xdot}),
+    "across": Reference(PLACES, {"X": _X}),
+    "reactions_at": Reference(CUT, {"R": _R_at}),
+    "reactions": Reference(f"{CUT}; accelerations {SOLVED}", {"R": _R}),
+    "drives": Reference(f"{CUT}; accelerations {SOLVED}", {"D": _D}),
+    "power": Reference(f"{CUT}; through times across; sums are zero", {"P": _P, "sums": _sums}),
+    "outputs": Reference(f"{CUT}; {PLACES}; the model's own expressions", {"y": _y}),
+    "project": Reference(
+        "the state itself, which obeys the constraints", {"q_on": _q_on, "v_on": _v_kept}
+    ),
+    "project_velocities": Reference(
+        f"{ROWS}; the change of least kinetic energy, solved by NumPy",
+        {"q_on": _q_on, "v_on": _v_projected},
+        {"v": "v_off"},
+        "project",
+    ),
+    "project_beside": Reference(
+        "no gap and no slip remains, by the functions that are compared themselves",
+        {},
+        {"q": "q_off", "v": "v_off"},
+        "project",
+        (
+            After("constraints", {"phi": _no_gap}, {"q": f"{RETURNED}q_on"}),
+            After(
+                "constraint_rates",
+                {"rates": _no_slip},
+                {"q": f"{RETURNED}q_on", "v": f"{RETURNED}v_on"},
+            ),
+        ),
+    ),
     "complete": Reference(
         "the state itself, from coordinates beside it and its own independent ones",
         {"q_on": _q_on, "v_on": _v_on},
@@ -251,15 +348,9 @@ WHOLE = ("com", "com_velocity", "Jcom", "hg", "Ag", "Agdot_v")
 """Results that `kinematics` has of the whole, as their own functions do."""
 
 
-OF_BODIES = ("regressor", "inertial_parameters")
-"""Of models without networks: what rotors of motors are worth to joints is known by no other route."""
-
-
-def references(
-    frames: Iterable[NamedFrame] = (), *, networks: bool = False
-) -> dict[str, Reference]:
-    """The register, with the functions of some frames, of a model with or without networks."""
-    found = {x: y for x, y in REFERENCES.items() if not (networks and x in OF_BODIES)}
+def references(frames: Iterable[NamedFrame] = ()) -> dict[str, Reference]:
+    """The register, with the functions of some frames."""
+    found = dict(REFERENCES)
     together = {
         name: made for reference in REFERENCES.values() for name, made in reference.results.items()
     }

@@ -60,12 +60,12 @@ def coordinate_rates(tree: KinematicTree, algebra: Algebra, q: Any, v: Any) -> l
             continue  # it follows another joint
         at = tuple(q[f.index] for f in places)
         own = tuple(v[f.index] for f in link.place.velocities)
-        for f, rate in zip(places, _rates(link.joint, algebra, at, own), strict=True):
+        for f, rate in zip(places, own_rates(link.joint, algebra, at, own), strict=True):
             rates[f.index] = rate
     return rates
 
 
-def _rates(joint: Joint, algebra: Algebra, q: tuple[Any, ...], v: tuple[Any, ...]) -> Any:
+def own_rates(joint: Joint, algebra: Algebra, q: tuple[Any, ...], v: tuple[Any, ...]) -> Any:
     """A joint's own q̇: a quaternion turns by ``q (ω/2, 0)``, vectors in head axes by ``q (v, 0) q*``."""
     if len(q) > len(v):
         turn, spin = q[-4:], v[-3:]
@@ -80,7 +80,7 @@ def _rates(joint: Joint, algebra: Algebra, q: tuple[Any, ...], v: tuple[Any, ...
         found: list[Any] = []
         for part, _ in joint.sequence():
             here = slice(len(found), len(found) + part.freedoms)
-            found += _rates(part, algebra, q[here], v[here])
+            found += own_rates(part, algebra, q[here], v[here])
         return found
     return v
 

@@ -10,6 +10,7 @@ from linegraph.constraints import CONSTRAINTS
 from linegraph.elements import ELEMENTS
 from linegraph.joints import JOINTS
 from linegraph.model import Model
+from linegraph.modelfile.bounded import CHECK
 from linegraph.modelfile.expressions import Names
 from linegraph.modelfile.kinds import WRONG, said
 from linegraph.modelfile.names import name_problem
@@ -133,6 +134,7 @@ class _Builder:
         self._formulation()
         for limit in self._model.constraints:
             self._claim((limit.kind, limit.name), claims_of_constraint(limit))
+        self._check()
         read_outputs(self._data.get("outputs", {}), self._spot("outputs"), self._names, self._model)
         for output in self._model.outputs:
             self._claim(("outputs", output.name), [output_claim(output.name)])
@@ -244,6 +246,14 @@ class _Builder:
         if isinstance(found.get("coordinates"), dict):
             found["of_body"] = found.pop("coordinates")
         self._model.formulation(**found)
+
+    def _check(self) -> None:
+        if not isinstance(self._data.get("check"), dict):
+            return
+        found = CHECK.read(self._data["check"], self._spot("check"), self._names)
+        if found is not WRONG:
+            self._model.places["check"] = self._report.line(("check",)) or 1
+            self._model.check_within(**found)
 
     def _basement(self) -> None:
         if isinstance(self._data.get("basement"), dict):

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from linegraph.errors import LinegraphError
+from linegraph.errors import DeviceFailed, LinegraphError
+from linegraph.files import OF_DEVICES, write_new
 from linegraph.modelfile.names import name_problem
 from linegraph.modelfile.report import shown
 
@@ -120,11 +121,11 @@ def write(name: str, out: str | None = None) -> Path:
     path = Path(out or f"{name}.toml")
     text = starter(name)
     try:
-        with path.open("x", encoding="utf-8", newline="\n") as file:
-            file.write(text)
+        write_new(path, text)
     except FileExistsError:
         raise LinegraphError(f"{path}: is there already; choose another name or --out") from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise LinegraphError(f"{shown(str(path), 1000)}: cannot be written: {reason}") from None
+        kind = DeviceFailed if getattr(error, "errno", None) in OF_DEVICES else LinegraphError
+        raise kind(f"{shown(str(path), 1000)}: cannot be written: {reason}") from None
     return path

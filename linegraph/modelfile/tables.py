@@ -19,6 +19,7 @@ from linegraph.elements import ELEMENTS, Element
 from linegraph.elements.load import BODY, WORLD
 from linegraph.joints import JOINTS, Joint
 from linegraph.joints.compound import PARTS
+from linegraph.modelfile.bounded import CHECK
 from linegraph.modelfile.expressions import Scope
 from linegraph.modelfile.fields import Field, Named, Table
 from linegraph.modelfile.kinds import (
@@ -390,6 +391,7 @@ FLAT: Mapping[str, Table | None] = {
     "gravity": GRAVITY,
     "basement": BASEMENT,
     "formulation": FORMULATION,
+    "check": CHECK,
     "outputs": None,
 }
 """The tables ``[table]``; None for those with names of the user's own."""

@@ -126,6 +126,12 @@ class Network:
         return [Sizes(self.laws.calculus)(r) for r in self.loop]
 
     @cached_property
+    def variable_sizes(self) -> dict[str, tuple[Scalar, Scalar]]:
+        """Of (X, Y) of every edge the size of the terms that they are sums of."""
+        sizes = Sizes(self.laws.calculus)
+        return {name: (sizes(x), sizes(y)) for name, (x, y) in self.variables.items()}
+
+    @cached_property
     def parts(self) -> dict[str, tuple[Scalar, ...]]:
         """F with all inputs zero, what inputs add to that, and both; by row.
 

@@ -9,15 +9,15 @@ text, markdown, latex, html    its writers
 from __future__ import annotations
 
 from importlib import import_module
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linegraph.errors import LinegraphError
-from linegraph.files import write_all
+from linegraph.files import is_stream, write_file
 from linegraph.report.overview import assembled, show
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     from linegraph.derive import Derivation
 
@@ -64,7 +64,7 @@ def report(
 
 
 def format_of(path: str) -> str:
-    """The format of a file by its ending.
+    """The format of a file by its ending; text for a device or a pipe whose name has none.
 
     Raises:
         LinegraphError: no format ends so.
@@ -72,6 +72,8 @@ def format_of(path: str) -> str:
     for name, ending in FORMATS.items():
         if path.lower().endswith(ending):
             return name
+    if is_stream(path):
+        return "text"
     endings = ", ".join(FORMATS.values())
     raise LinegraphError(f"the ending of {path} tells no format: use {endings}, or --format")
 
@@ -82,10 +84,7 @@ def save(path: str, text: str) -> Path:
     Raises:
         LinegraphError: it cannot be written.
     """
-    target = Path(path)
-    if target.is_dir() or not target.name:
-        raise LinegraphError(f"cannot write to {path}: it is a folder")
-    return write_all(target.parent, {target.name: text})[0]
+    return write_file(path, text)
 
 
 __all__ = ["FORMATS", "assembled", "format_of", "report", "save", "show"]

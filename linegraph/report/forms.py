@@ -254,7 +254,7 @@ class Forms:
         return Section("Constraints of the loops", tuple(blocks))
 
     def _counted(self) -> list[Block]:
-        from linegraph.closed_programs import freedoms_text
+        from linegraph.closed_remarks import freedoms_text
 
         derivation = self._subject.derivation
         if any(p.value is None for p in self._subject.model.parameters.values()):

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from linegraph.closed_programs import freedoms_text
+from linegraph.closed_remarks import freedoms_text
 from linegraph.closure import equations
 from linegraph.domains import DOMAINS
 from linegraph.parameters import Parameter
+from linegraph.regularity import cause
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -146,6 +147,8 @@ def _summary(derivation: Derivation, tree: KinematicTree) -> Lines:
         ]
     if model.components:
         lines.insert(0, f"{len(model.components)} components in networks")
+    if derivation.idle:
+        lines.append(f"the mass matrix is singular: {cause(derivation.idle)}")
     return lines
 
 

@@ -81,11 +81,11 @@ class Subject:
         names = {"q": self.q_names, "v": self.v_names, "u": self.u_names}
         return Sympy(names)
 
-    def value(self, x: Any, **own: Any) -> Math:
+    def value(self, x: Any, /, **own: Any) -> Math:
         """A value of the model as it was given."""
         return self.expression(self.resolve(x, **own))
 
-    def resolve(self, x: Any, **own: Any) -> Any:
+    def resolve(self, x: Any, /, **own: Any) -> Any:
         """A value of the model over sympy, names as symbols."""
         return resolver(self.algebra, AnyName(own))(x)
 

@@ -93,6 +93,7 @@ class Simplifier:
         self._progress = progress or (lambda text: None)
         self._symbol = symbol
         self._names: dict[Expr, Symbol] = {}
+        self._defined: dict[Symbol, Expr] = {}
         self._ring = Ring()
         units = [tuple(unit) for unit in units]
         for unit in units:
@@ -127,8 +128,51 @@ class Simplifier:
                 raise ModelError(what, problem) from None
         return found
 
+    # -- what others calculate with
+
+    @property
+    def ring(self) -> Ring:
+        """The polynomials that are written."""
+        return self._ring
+
+    @property
+    def points(self) -> list[Point]:
+        """Where forms are compared."""
+        return self._points
+
+    @property
+    def budget(self) -> int:
+        """How many products of two terms a quantity may take."""
+        return self._budget
+
+    def known(self, e: Expr) -> Symbol | None:
+        """The symbol that is written as an expression, if one is."""
+        return self._names.get(e)
+
+    def define(self, symbol: Symbol, e: Expr, *, valued: bool = False) -> None:
+        """Write a symbol as an expression from now on.
+
+        Args:
+            symbol: its argument and place.
+            e: how it is written.
+            valued: whether the expression is its value, too.
+        """
+        if valued:  # before it is known by its name
+            for point in self._points:
+                point.define(symbol, e)
+        self._defined[symbol] = e
+        self._names[e] = symbol
+
+    def of_terms(self, terms: Terms) -> Expr:
+        """The closed form of a polynomial of the ring."""
+        key = frozenset(terms.items())
+        if key not in self._written:
+            values = [point.terms(terms)[0] for point in self._points]
+            self._written[key] = self._written_as(terms, values)
+        return self._written[key]
+
     def _named(self, symbol: Symbol) -> Expr:
-        expression = self._symbol(symbol)
+        expression = self._defined.get(symbol) or self._symbol(symbol)
         self._names[expression] = symbol
         return expression
 

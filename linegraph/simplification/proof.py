@@ -17,7 +17,7 @@ from linegraph.simplification.polynomial import COS, FUNCTION, ROOT, SIN, SYMBOL
 from linegraph.sympy_walk import OURS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from linegraph.differentiation import Symbol
     from linegraph.simplification.numbers import Terms
@@ -104,6 +104,14 @@ class Point:
             self._values[symbol] = self._algebra.context.mpf(draw.randint(20, 150)) / 107
         return self._values[symbol]
 
+    def define(self, symbol: Symbol, e: Expr) -> None:
+        """Give a symbol the value of an expression."""
+        self._values[symbol] = self._of(e)
+
+    def replay(self, symbol: Callable[[Symbol], Any]) -> Replay:
+        """Evaluates scalars of the DAG with other values of symbols."""
+        return Replay(self._algebra, symbol, self._algebra.context.convert)
+
     def node(self, x: Scalar) -> Any:
         """What a scalar of the DAG is worth."""
         return self._replay(x)
@@ -152,6 +160,8 @@ class Point:
             return mpf(e.p) / e.q
         if e.is_Float:
             return mpf(float(e))
+        if e.is_NumberSymbol:
+            return mpf(str(e.evalf(DIGITS + 10)))
         parts = [self.expression(part) for part in e.args]
         if e.is_Add:
             return sum(parts)

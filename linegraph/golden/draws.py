@@ -1,0 +1,292 @@
+"""States at which a model is looked at: drawn at random, legal, and within the bounds that the user gives.
+
+Quaternions have length 1, loops are closed and velocities allowed, every law is defined, and nothing is
+nearly singular. At every second state the parameters differ from the model's own values: two parameters of
+one value could not be told apart otherwise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from linegraph.assembly import consistent
+from linegraph.checks import nearest
+from linegraph.closure import equations
+from linegraph.errors import ModelError
+from linegraph.golden.blame import undefined
+from linegraph.golden.point import Kept, Point
+
+if TYPE_CHECKING:
+    import random
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from linegraph.bounds import Interval
+    from linegraph.derive import Derivation
+    from linegraph.golden.walk import Valued
+    from linegraph.numeric import Numeric
+    from linegraph.program import Quantity
+
+STATES = 10
+"""How many states a model is asked at, that at rest included."""
+
+TRIES = 40
+"""How many states are drawn for one that is defined."""
+
+DIGITS = 13
+"""Digits of what is written: the tolerance is far above them."""
+
+REACHES = (1.0, 0.3, 0.1, 0.03)
+"""How far states of networks and inputs are from zero; the first that will do."""
+
+EVEN = 300.0
+"""What acts in a network may be this much larger at one state than at most."""
+
+REGULAR = 1e4
+"""Accelerations may be this much smaller than what they are made of; beyond, M is nearly singular."""
+
+SOLVED = ("a", "A", "B", "da_dq", "da_dv", "da_du", "da_dp", "Lambda", "R", "D", "P", "y")
+"""Results for which M is solved with."""
+
+APART = (0.8, 1.25)
+"""Parameters that are drawn are within these multiples of the model's own values."""
+
+GAP = 1e-9
+"""What constraints may miss, at most, in lengths and angles of size 1."""
+
+BESIDE = 0.02
+"""How far guesses are from positions: so little that they lead to these, and to no other way to assemble."""
+
+SINGULAR = "no state was found at which all laws are defined and M is regular"
+
+Asked = dict[str, "Callable[[Point], Valued]"]
+"""The results of a function, and what gives them."""
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """How states of a model are drawn.
+
+    Attributes:
+        derivation: the model.
+        draw: where randomness comes from.
+        kept: what is independent under constraints.
+        chosen: for each function that is to be defined at the states, its results.
+        varied: whether those with a value may be: the functions take them as an argument.
+    """
+
+    derivation: Derivation
+    draw: random.Random
+    kept: Kept
+    chosen: Sequence[Asked]
+    varied: bool = True
+
+    def points(self, count: int = STATES) -> list[Point]:
+        """All states; those of networks so near zero that no exponential law dwarfs one state by another.
+
+        Raises:
+            ModelError: a law is defined at no state that was tried, M is singular at all of them, or the
+                bounds name what does not exist.
+        """
+        self._require_known()
+        network = self.derivation.formulation.network is not None
+        points: list[Point] = []
+        for reach in REACHES if network else REACHES[:1]:
+            try:
+                found = [self._point(reach, k) for k in range(count)]
+            except ModelError:
+                if not points:
+                    raise
+                break
+            points = found
+            if _even(points):
+                break
+        return points
+
+    def _require_known(self) -> None:
+        """Refuse bounds of what the model does not have."""
+        tree, model = self.derivation.structure, self.derivation.model
+        bounds = model.bounds
+        known: dict[str, Iterable[str]] = {
+            "coordinates": [x.name for x in tree.positions],
+            "velocities": [x.name for x in tree.velocities],
+            "inputs": [x.name for x in tree.inputs],
+            "parameters": [p.name for p in model.parameters.values() if not p.derived],
+        }
+        for group, names in known.items():
+            for name in getattr(bounds, group):
+                if name not in names:
+                    problem = f"{group}: there is no {name}; {nearest(name, list(names))}"
+                    raise ModelError("check", problem)
+
+    def _point(self, reach: float, place: int) -> Point:
+        """A state at which everything is defined, and nothing nearly singular."""
+        first: ModelError | None = None
+        for attempt in range(TRIES):
+            # roots, logarithms and gaps want what is positive
+            low = -1.0 if attempt % 2 == 0 else 0.2
+            varied = self.varied and place % 2 == 1 and attempt < TRIES // 2
+            try:
+                rest = place == 0 and attempt < 2
+                point = self._drawn((low, reach), rest=rest, varied=varied)
+                if point is not None and self._defined(point):
+                    return point
+            except ModelError as error:
+                first = first or error
+            except (ArithmeticError, ValueError):
+                continue
+        if first is not None:
+            raise undefined(self.derivation, first, self._somewhere())
+        who = f'model "{self.derivation.model.name}"'
+        raise ModelError(who, SINGULAR)
+
+    def _somewhere(self) -> Numeric | None:
+        """The model for some inputs, at a time, to ask whose law is not defined."""
+        tree, bounds = self.derivation.structure, self.derivation.model.bounds
+        u = self._some(tree.inputs, bounds.inputs, (-1.0, 1.0))
+        try:
+            return self.derivation.numeric(None, bounds.sometime, u)
+        except (ModelError, ArithmeticError):
+            return None
+
+    def _drawn(self, within: tuple[float, float], *, rest: bool, varied: bool) -> Point | None:
+        """A state: at rest in mechanics, or a random one, on the constraints if there are any.
+
+        Args:
+            within: the least value drawn, and how far states of networks and inputs reach.
+            rest: whether it is to be at rest.
+            varied: whether parameters are to be drawn.
+
+        Returns:
+            None where the loops do not close, or not within the bounds.
+        """
+        low, reach = within
+        tree, model = self.derivation.structure, self.derivation.model
+        first, bounds = tree.layout.mechanical, model.bounds
+        still = rest and low < 0
+        p = self._parameters(varied=varied)
+        t = self._one((0.1, 1.0), bounds.t) if model.depends_on_time else 0.0
+        u = self._some(tree.inputs, bounds.inputs, (reach * low, reach), still=still)
+        numeric = self.derivation.numeric(p, t, u)
+        both = tree.velocities[:first], tree.velocities[first:]
+        states = self._some(both[1], bounds.velocities, (reach * low, reach))
+        v = self._some(both[0], bounds.velocities, (-1.0, 1.0), still=rest)
+        q = self._some(tree.positions, bounds.coordinates, (low, 1.0))
+        if rest:
+            q = _held(tree.positions, bounds.coordinates, _at_rest(self.derivation))
+        numeric.tree.normalise(q)
+        if tree.closed:
+            q, found = consistent(self.derivation, numeric, self.draw)
+            if rest and not model.depends_on_time and not any(u) and not varied:
+                q, found = list(self.derivation.assembled.q), [0.0] * len(found)
+            v, states = found[:first], found[first:] if not rest else states
+            if not self._legal(numeric, q, [*v, *states]):
+                return None
+        q, v = [short(x, 15) for x in q], [short(x, 15) for x in (*v, *states)]
+        beside = [x + self.draw.uniform(-BESIDE, BESIDE) for x in q]
+        numeric.tree.normalise(beside)
+        a, off, lam = (self._plain(n) for n in (len(v), len(v), len(equations(tree))))
+        off_q = [short(x, 15) for x in beside]
+        return Point(self.derivation, t, u, q, v, a, off_q, off, self.kept, p or {}, lam)
+
+    def _parameters(self, *, varied: bool) -> dict[str, float] | None:
+        """Values of the parameters that are not the model's own; None where all are.
+
+        Redundant constraints stay so only as long as lengths fit: there all keep their values.
+        """
+        model, found = self.derivation.model, {}
+        fixed = self.derivation.structure.closed and self.derivation.assembled.redundant > 0
+        for parameter in model.parameters.values():
+            name, value = parameter.name, parameter.value
+            if parameter.derived:
+                continue
+            bound = model.bounds.parameters.get(name)
+            if bound is not None and varied:
+                found[name] = self._one((0.5, 2.0), bound)
+            elif value is not None and varied and not fixed:
+                found[name] = short(float(value) * self.draw.uniform(*APART))
+        return found or None
+
+    def _legal(self, numeric: Numeric, q: Sequence[float], v: Sequence[float]) -> bool:
+        """Whether the loops are closed, and everything is within its bounds."""
+        tree, bounds = self.derivation.structure, self.derivation.model.bounds
+        gaps = [*numeric.constraints(q), *numeric.constraint_rates(q, v)]
+        pairs = [(tree.positions, q, bounds.coordinates), (tree.velocities, v, bounds.velocities)]
+        inside = (
+            known[x.name][0] <= value <= known[x.name][1]
+            for quantities, values, known in pairs
+            for x, value in zip(quantities, values, strict=True)
+            if x.name in known
+        )
+        return all(abs(gap) < GAP for gap in gaps) and all(inside)
+
+    def _some(
+        self,
+        quantities: Sequence[Quantity],
+        bounds: Mapping[str, Interval],
+        within: Interval,
+        *,
+        still: bool = False,
+    ) -> list[float]:
+        """One number for each quantity, within its bounds where it has some."""
+        if still:
+            return _held(quantities, bounds, [0.0] * len(quantities))
+        return [self._one(within, bounds.get(x.name)) for x in quantities]
+
+    def _one(self, within: Interval, bound: Interval | None) -> float:
+        return short(self.draw.uniform(*(bound or within)))
+
+    def _plain(self, count: int) -> list[float]:
+        return [self._one((-1.0, 1.0), None) for _ in range(count)]
+
+    def _defined(self, point: Point) -> bool:
+        """Whether all is finite there, and accelerations are not what is left of far larger things."""
+        np = point.walk.np
+        for name, made in (pair for asked in self.chosen for pair in asked.items()):
+            try:
+                value, size = made(point)
+                if not (np.isfinite(value).all() and np.isfinite(size).all()):
+                    return False
+                if name in SOLVED and not _regular(np, *point.motion[0]):
+                    return False
+                if name == "Lambda" and not _regular(np, value, size, least=0):
+                    return False
+            except np.linalg.LinAlgError:
+                return False
+        return True
+
+
+def _held(
+    quantities: Sequence[Quantity], bounds: Mapping[str, Interval], values: Sequence[float]
+) -> list[float]:
+    """Values moved into their bounds."""
+    pairs = [(x, bounds.get(quantity.name)) for quantity, x in zip(quantities, values, strict=True)]
+    return [x if bound is None else min(max(x, bound[0]), bound[1]) for x, bound in pairs]
+
+
+def _even(points: Sequence[Point]) -> bool:
+    """Whether what acts in networks is of the same size at all states, more or less."""
+    np = points[0].walk.np
+    first = points[0].walk.tree.layout.mechanical
+    sizes = np.array([np.abs(point.bodies.bias[0][first:]) for point in points])
+    return bool((sizes.max(axis=0) <= EVEN * np.median(sizes, axis=0)).all())
+
+
+def _at_rest(derivation: Derivation) -> list[float]:
+    """Where the frames of all joints coincide."""
+    q = [0.0] * len(derivation.structure.positions)
+    for link in derivation.structure.links:
+        places = link.place.positions
+        for f, x in zip(places, link.joint.rest(), strict=False):
+            q[f.index] = float(x)
+    return q
+
+
+def _regular(np: Any, value: Any, size: Any, least: float = 1.0) -> bool:
+    largest = least + np.abs(value).max(initial=0.0)
+    return bool(size.max(initial=0.0) <= REGULAR * largest)
+
+
+def short(x: float, digits: int = DIGITS) -> float:
+    """A number rounded to some significant digits."""
+    return float(f"{x:.{digits}g}")

@@ -1,0 +1,218 @@
+"""Every model of this project by name, in all coordinates, and all that can be asked of one.
+
+What is asked is what the commands do: `derive`, `graph`, `trees`, `check` and `emit` with every function.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pinocchio_models
+import targets
+from emitted import load
+from modelfile_text import LOOP, SMALL, ZOO
+
+import codegen
+from linegraph import LinegraphError, ModelError, checking, derive, modelfile, report, urdf
+from linegraph.assembly import consistent
+from linegraph.drawing.files import picture
+from linegraph.emission import CONVENTIONS
+from linegraph.modelfile.starter import starter
+from linegraph.named_frames import named_frames
+from linegraph.programs import OF_FRAMES, PROGRAMS, module_of
+from linegraph.trees import candidates, table
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from linegraph import Model
+    from linegraph.derive import Derivation
+    from linegraph.program import Module, Program, Routine
+
+    Maker = Callable[[], Model]
+
+ROOT = Path(__file__).parent.parent
+DOCUMENTS = (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
+COORDINATES = ("joint", "absolute", "absolute-angle")
+STATES = 3
+
+
+def documented() -> dict[str, Maker]:
+    """The models that documents show as blocks of TOML: those that are whole by themselves."""
+    found = {}
+    for path in DOCUMENTS:
+        blocks = re.findall(r"^```toml\n(.*?)^```", path.read_text("utf-8"), re.M | re.S)
+        for k, block in enumerate(blocks):
+            try:
+                modelfile.parse(block.encode(), "block.toml")
+            except LinegraphError:
+                continue  # a piece that shows one table
+            found[f"{path.stem}_{k}"] = _text(block)
+    return found
+
+
+def _text(text: str) -> Maker:
+    return lambda: modelfile.parse(text.encode(), "model.toml")
+
+
+def _floating(path: Path) -> dict[str, Maker]:
+    """A URDF with its root link welded, and floating."""
+    name = f"{path.parent.name}_{path.stem}"
+    return {
+        name: lambda: urdf.read(path),
+        f"{name}_floating": lambda: urdf.read(path, base="floating"),
+    }
+
+
+def robots() -> dict[str, Maker]:
+    """Every robot of the example-robot-data wheel; none where it is not installed."""
+    found: dict[str, Maker] = {}
+    for path in pinocchio_models.urdf_files():
+        found |= _floating(path)
+    return found
+
+
+def every_model() -> dict[str, Maker]:
+    """Every model of examples, documents and tests."""
+    own = {
+        "small": _text(SMALL),
+        "zoo": _text(ZOO),
+        "loop": _text(LOOP),
+        "new": _text(starter("new")),
+    }
+    whole = targets.everything()
+    return {k: v for k, v in whole.items() if not k.endswith(targets.MORE)} | documented() | own
+
+
+def derived(make: Maker, coordinates: str) -> Derivation:
+    """A model in some coordinates; `joint` leaves the choice of the model as it is."""
+    model = make()
+    if coordinates != COORDINATES[0]:
+        model.formulation(independent=None, coordinates=coordinates)
+    return derive(model)
+
+
+# ---- what is asked
+
+
+def reported(derivation: Derivation, format: str, level: str = "fast") -> None:
+    """`derive` in one format."""
+    text = report.report(derivation, format, level=level)
+    assert text.strip()
+    assert not re.search(r"(?<![\w.])(nan|inf|zoo)(?![\w.])", text), "no number"
+
+
+def drawn(derivation: Derivation) -> None:
+    """`graph` as SVG and as DOT, the mechanism too."""
+    text = picture(derivation, "x.dot")
+    assert isinstance(text, str)
+    assert text.startswith(("graph", "digraph"))
+    for what in ("graph", "both"):
+        svg = picture(derivation, "x.svg", what=what)
+        assert isinstance(svg, str)
+        assert not re.search(r'"[^"]*\b(nan|inf)\b[^"]*"', re.sub(r">[^<]*<", "><", svg))
+
+
+def planted(derivation: Derivation) -> None:
+    """`trees`."""
+    assert table(candidates(derivation.model))
+
+
+def checked(derivation: Derivation) -> None:
+    """`check`: differences are rounding."""
+    findings = checking.check(derivation)
+    assert findings.good, findings
+
+
+def functions_of(derivation: Derivation) -> Module:
+    """The program with every function that the model has."""
+    bodies = list(derivation.model.bodies)
+    frames = named_frames(derivation.model, bodies[-1:])
+    able = []
+    for key in PROGRAMS:
+        if key in OF_FRAMES and not frames:
+            continue
+        own = frames if key in OF_FRAMES or key == "kinematics" else ()
+        try:
+            module_of(derivation, "m", folded=False, about=(), only=(key,), frames=own)
+        except ModelError:
+            continue  # the model has none, or a frame cannot move so
+        able.append(key)
+    return module_of(derivation, "m", folded=False, about=CONVENTIONS, only=able, frames=frames)
+
+
+def emitted(derivation: Derivation, folder: Path) -> None:
+    """`emit` with every function, in every language, and what the emitted Python returns."""
+    module = functions_of(derivation)
+    for language in codegen.LANGUAGES:
+        files = codegen.render(module, language)
+        for text in files.values():
+            assert not re.search(r"(?<![\w.])-?(nan|inf|NAN|INFINITY|zoo)(?![\w.(])", _code(text))
+    evaluated(derivation, module, load(files, "m", folder))
+
+
+def _code(text: str) -> str:
+    """Emitted text less its comments."""
+    text = re.sub(r"/\*.*?\*/", "", text, flags=re.S)
+    return re.sub(r'""".*?"""|#.*', "", text, flags=re.S if '"""' in text else 0)
+
+
+def evaluated(derivation: Derivation, module: Module, found: Any) -> None:
+    """Every function at a few states: finite numbers, or an exception that its documentation names."""
+    answered = set()
+    for seed in range(STATES):
+        for program, values in _calls(derivation, module, found, seed):
+            try:
+                with np.errstate(all="ignore"):
+                    got = getattr(found, program.name)(*values)
+            except (ArithmeticError, np.linalg.LinAlgError):
+                continue
+            results = got if isinstance(got, tuple) else (got,)
+            for result, value in zip(program.results, results, strict=True):
+                assert np.isfinite(value).all(), f"{program.name}: {result.name} = {value}"
+            answered.add(program.name)
+    silent = {p.name for p in module.programs} - answered
+    assert not silent, f"nowhere a number: {sorted(silent)}"
+
+
+def _calls(
+    derivation: Derivation, module: Module, found: Any, seed: int
+) -> Iterator[tuple[Program | Routine, list[Any]]]:
+    """Every function with arguments at a drawn state, which satisfies the constraints."""
+    draw = random.Random(seed)
+    values: dict[str, Any] = {"p": getattr(found, "DEFAULT_PARAMETERS", None)}
+    values["t"] = draw.uniform(0, 1)
+    reach = 0.5 if derivation.structure.network is None else 0.1
+    inputs = [draw.uniform(-reach, reach) for _ in module.inputs]
+    numeric = derivation.numeric(t=values["t"], u=inputs)
+    tree = numeric.tree
+    if tree.closed:
+        q, v = consistent(derivation, numeric, draw)
+    else:
+        q = [draw.uniform(-0.7, 0.7) for _ in tree.positions]
+        tree.normalise(q)
+        v = [draw.uniform(-reach, reach) for _ in tree.velocities]
+    values |= {"q": q, "v": v, "u": inputs}
+    prepare = getattr(found, "prepare", None)
+    if prepare is not None:
+        values["c"] = prepare(values["p"])
+    for program in module.programs:
+        given = []
+        for argument in program.arguments:
+            if argument.name == "x":
+                given.append(np.array([*q, *v])[: argument.size])
+            elif argument.name in values:
+                given.append(values[argument.name])
+            else:
+                given.append([draw.uniform(-reach, reach) for _ in range(argument.size or 0)])
+        yield program, given
+
+
+def is_number(x: Any) -> bool:
+    """Whether it is finite."""
+    return math.isfinite(x)
