@@ -551,6 +551,19 @@ def test_an_input_called_the_rate_of_another_is_an_input_of_its_own() -> None:
     assert sympy.zeros(2, 2) == space.E
 
 
+def test_a_parameter_s_is_not_the_variable_of_a_transfer_function() -> None:
+    """X'' = -s x + u: 1/(p² + s), never 1/(s² + s)."""
+    model = lg.Model("m")
+    stiffness = model.parameter("s", 4.0)
+    model.prismatic("x", ("ground", model.body("b", mass=1)), (1, 0, 0))
+    model.spring("k", joint="x", stiffness=stiffness)
+    space = lg.derive(model).linearise()
+    with pytest.raises(lg.ModelError, match="the model has a symbol s, too"):
+        space.transfer_function()
+    p, s = sympy.symbols("p s")
+    assert sympy.simplify(space.transfer_function(p)[0] - 1 / (p**2 + s)) == 0
+
+
 # ---- a derivation is a snapshot
 
 
