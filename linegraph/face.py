@@ -28,7 +28,8 @@ class Face:
         M(q) v̇ + h(q, v) = Q(q, v, u) + J^T λ        q̇ = N(q) v        J v̇ = γ
 
     λ, J and γ only where loops or constraints are. Coordinates have the names of joints, their rates are
-    ``name_dot``, accelerations ``a_name``; velocities that are no rates keep names of their own.
+    ``name_dot``, accelerations ``a_name``, efforts ``u_name``; velocities that are no rates keep names of
+    their own. `symbol_names` says what they are called where the model has something of such a name.
 
     Example:
         >>> from linegraph import Model, derive

@@ -98,11 +98,18 @@ class StateSpace:
         has more positive terms than negative ones; among floats its largest number is 1.
 
         Raises:
-            ModelError: it has too many terms.
+            ModelError: it has too many terms, or something of the model has the symbol's name.
         """
         symbol = s if isinstance(s, sympy.Symbol) else sympy.Symbol("s")
+        if any(symbol in part.free_symbols for part in self._matrices):
+            problem = f"the model has a symbol {symbol}, too; give another, as transfer_function(Symbol('p'))"
+            raise ModelError("transfer function", problem)
         found = _Response(self, symbol).written()
         return found if s is None or s == symbol else found.subs(symbol, s)
+
+    @property
+    def _matrices(self) -> tuple[Expr, ...]:
+        return (self.A, self.B, self.C, self.D, self.E, self.F)
 
     def numeric(self, parameters: Mapping[str, float] | None = None) -> tuple[Any, Any, Any, Any]:
         """A, B, C, D as arrays, shifted where need be; parameters in place of the model's own.
@@ -121,7 +128,9 @@ class StateSpace:
         matrices = []
         for matrix in (space.A, space.B, space.C, space.D):
             # letters may be symbols with assumptions
-            found = matrix.subs({x: values[x.name] for x in matrix.free_symbols if x.name in values})
+            found = matrix.subs(
+                {x: values[x.name] for x in matrix.free_symbols if x.name in values}
+            )
             missing = sorted(symbol.name for symbol in found.free_symbols)
             if missing:
                 raise ModelError("state space", f"no value is known of {', '.join(missing)}")

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pytest
 
 import linegraph as lg
 from linegraph import modelfile, orthogonality
@@ -116,3 +117,150 @@ def compared(model: lg.Model, coordinates: str, seed: int = 0) -> float:
     a, b = solved(first, q, v, u), solved(second, *there, u)
     size = 1 + max(float(np.abs(x).max(initial=0)) for x in a.values())
     return max(float(np.abs(a[key] - b[key]).max(initial=0)) for key in a) / size
+
+
+ALLOWED = "no branch of the tree|put it in a joint that is a branch|moves no inertia"
+"""Why a model cannot have such coordinates: refused with a reason, never moved otherwise."""
+
+
+@pytest.mark.seeds(range(1), range(6))
+@pytest.mark.parametrize("coordinates", OTHERS)
+def test_coordinates_change_neither_motion_nor_outputs(coordinates: str, seed: int) -> None:
+    refused = {}
+    for name, model in readable().items():
+        if "stewart" in name and not seed:
+            continue  # seconds by itself
+        try:
+            worst = compared(model, coordinates, seed)
+        except lg.LinegraphError as error:
+            refused[name] = str(error)
+            continue
+        assert worst < TOLERANCE, (name, worst)
+    assert all(re.search(ALLOWED, reason) for reason in refused.values()), refused
+    assert len(refused) <= 6
+    assert len(readable()) > 30
+
+
+SAME_NAME = """name = "m"
+[gravity]
+acceleration = [0, 0, 0]
+[frame.f]
+at = [1, 2, 3]
+rpy = [0, 0, "pi/2"]
+[body.a]
+mass = 2
+mass_center = [0.1, 0, 0]
+inertia = [1, 1, 1]
+[free.a]
+between = ["ground.f", "a"]
+effort = false
+[load.l]
+at = "a"
+force = ["10*a_x + 3*der(a_y)", 0, 0]
+[outputs]
+x = "a_x"
+fx = "acceleration(a.mass_center).x"
+"""
+DRUM = """name = "m"
+[body.drum]
+mass = 1
+inertia = [1, 1, 1]
+[revolute.drum]
+between = ["ground", "drum"]
+axis = [0, 0, 1]
+[load.l]
+at = "drum"
+torque = [0, 0, "-der(drum)"]
+[outputs]
+w = "der(drum)"
+"""
+
+
+@pytest.mark.parametrize("text", [SAME_NAME, DRUM], ids=["free", "hinge"])
+@pytest.mark.parametrize("coordinates", OTHERS)
+def test_a_joint_called_like_its_body_keeps_its_coordinates(text: str, coordinates: str) -> None:
+    model = modelfile.parse(text.encode(), "m.toml")
+    for seed in range(5):
+        assert compared(model, coordinates, seed) < 1e-12
+
+
+def test_the_position_of_a_free_joint_is_that_of_its_origin_in_absolute_coordinates() -> None:
+    """A pull of -10 b_x: with the origin at x = 0.7 and the mass centre at 1.0 it is -7 N and not -10 N."""
+    text = SAME_NAME.replace('"10*a_x + 3*der(a_y)"', '"-10*a_x"').replace("ground.f", "ground")
+    model = modelfile.parse(text.replace("[0.1, 0, 0]", "[0.3, 0, 0]").encode(), "m.toml")
+    model.formulation(coordinates="absolute")
+    d = lg.derive(model)
+    assert [q.name for q in d.structure.positions][:3] == ["a_body_x", "a_body_y", "a_body_z"]
+    q, v = [1.0, 0, 0, 0, 0, 0, 1.0], [0.0] * 6
+    found = solved(d, q, v, [])
+    assert found["outputs"] == pytest.approx([0.7, -7 / 2])
+    (power,) = np.array(d.numeric().bias(q, v))[:1]
+    assert power == pytest.approx(7.0)
+
+
+@pytest.mark.parametrize("name", ["yard", "excavator_arm"])
+@pytest.mark.parametrize("coordinates", OTHERS)
+def test_models_with_joints_called_like_bodies_have_absolute_coordinates(
+    name: str, coordinates: str
+) -> None:
+    """In the yard a relation names two joints, which stay branches therefore."""
+    model = next(m for m in readable().values() if m.name == name)
+    assert compared(model, coordinates, seed=1) < TOLERANCE
+
+
+def test_a_motor_says_that_its_joint_has_to_be_a_branch() -> None:
+    """The drum of the winch has a joint of its own name, with a motor in it."""
+    model = next(m for m in readable().values() if m.name == "winch")
+    assert compared(model, "absolute-angle", seed=1) < TOLERANCE
+    with pytest.raises(lg.ModelError, match="put it in a joint that is a branch"):
+        compared(model, "absolute")
+
+
+LED = """name = "m"
+[body.a]
+mass = 1
+[body.b]
+mass = 1
+[prismatic.x]
+between = ["ground", "a"]
+axis = [1, 0, 0]
+effort = false
+[prismatic.led]
+between = ["ground", "b"]
+axis = [0, 1, 0]
+motion = "0.1*sin(t)"
+[relation.r]
+rate = "der(x) - RATE"
+"""
+
+
+@pytest.mark.parametrize(
+    ("rate", "acceleration"),
+    [
+        ("der(led)", lambda t: -0.1 * np.sin(t)),
+        ("led*der(led)", lambda t: 0.01 * np.cos(2 * t)),
+        ("led + 0.3*t", lambda t: 0.1 * np.cos(t) + 0.3),
+    ],
+)
+def test_a_relation_follows_a_prescribed_motion(rate: str, acceleration: Any) -> None:
+    """X' = f(led, led', t): x'' is its whole derivative, that of the prescribed motion included."""
+    law = LED.replace("RATE", f"({rate})" if "+" in rate else rate)
+    d = lg.derive(modelfile.parse(law.encode(), "m.toml"))
+    for t in (0.0, 0.4, 1.0):
+        numeric = d.numeric(t=t)
+        assert numeric.constraint_bias([0.2], [0.1]) == pytest.approx([acceleration(t)], abs=1e-14)
+
+
+@pytest.mark.parametrize("sequence", ["xyz", "zxz", "yzx"])
+def test_a_free_joint_with_angles_pushes_alike_as_a_chord(sequence: str) -> None:
+    """Efforts along its position and its angles, and a law that names these."""
+    model = lg.Model("m")
+    model.ground.frame("f", at=(1, 0.5, 0), rpy=(0.3, -0.2, 0.4))
+    body = model.body("b", mass=2, mass_center=(0.1, 0.2, 0.3), inertia=(0.3, 0.4, 0.5))
+    model.free(
+        "b", ("ground.f", body), angles=sequence, effort=True, start=(0, 0, 0, 0.4, 0.7, 0.2)
+    )
+    model.load("l", body, force=("3*b_x - der(b_angle2)", "b_angle1", 0))
+    model.output("angle", "b_angle3 + 2*der(b_y)")
+    for seed in range(3):
+        assert compared(model, "absolute", seed) < 1e-11

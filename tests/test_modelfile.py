@@ -9,6 +9,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from modelfile_text import LOOP, SMALL, ZOO
 
@@ -430,3 +431,63 @@ def test_the_documentation_has_every_type() -> None:
     page = DOCUMENTATION.read_text("utf-8")
     for kind in TYPES:
         assert f"[{kind}." in page or f"`{kind}`" in page, kind
+
+
+# ---- inertias
+
+
+def with_inertia(text: str) -> lg.Model:
+    """A body on a hinge with the given lines."""
+    joint = '[revolute.x]\nbetween = ["ground", "a"]\naxis = [0, 1, 0]\n'
+    return parse(f"[parameters]\nJ = 5\n[body.a]\n{text}\n{joint}".encode(), "m.toml")
+
+
+@pytest.mark.parametrize(
+    ("text", "moments"),
+    [
+        ("mass = 1\ninertia = { xx = 1, yy = 1, zz = 5 }", "1, 1, 5"),
+        ('mass = 1\ninertia = [1, 1, "J"]', "1, 1, 5"),
+        ("mass = 1\ninertia = [[1, 2, 0], [2, 1, 0], [0, 0, 1]]", "-1, 1, 3"),
+        # about the mass centre at x = 2: yy and zz less 4 m
+        ("mass = 1\nfirst_moment = [2, 0, 0]\ninertia = [1, 5, 9]", "1, 1, 5"),
+    ],
+)
+def test_an_inertia_that_no_body_has_is_told(text: str, moments: str) -> None:
+    (warning,) = with_inertia(text).warnings
+    start = 'm.toml:3: body "a": no body has this inertia: principal moments'
+    assert warning.startswith(f"{start} {moments} kg m^2: ")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "mass = 1\ninertia = [1, 1, 2]",
+        "mass = 1\ninertia = { zz = 5 }",  # a model in a plane
+        "inertia = [[1, 1, 0], [1, 1, 0], [0, 0, 0]]",  # a rotor about an oblique axis
+        "mass = 2\nfirst_moment = [2, 0, 0]\ninertia = [1, 3, 3]",
+        "mass = 1",
+    ],
+)
+def test_other_inertias_cause_no_warning(text: str) -> None:
+    assert with_inertia(text).warnings == []
+
+
+def test_inertias_symmetric_within_rounding_are_made_symmetric() -> None:
+    """R I R^T by numpy is symmetric but for an ulp; what is off by more is refused."""
+    draw = np.random.default_rng(5)
+    off = 0
+    for _ in range(20):
+        turn, _ = np.linalg.qr(draw.normal(size=(3, 3)))
+        tensor = turn @ np.diag([0.3, 0.4, 0.5]) @ turn.T
+        off += int((tensor != tensor.T).any())
+        model = with_inertia(f"mass = 1\ninertia = {tensor.tolist()}")
+        by_hand = lg.Model("m")
+        by_hand.body("a", mass=1, inertia=tensor)
+        xx, xy, xz, yy, yz, zz = model.bodies["a"].inertia
+        found = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        np.testing.assert_allclose(found, (tensor + tensor.T) / 2, rtol=0, atol=1e-16)
+        assert by_hand.bodies["a"].inertia == model.bodies["a"].inertia
+    assert off > 5
+    tensor[0, 1] += 1e-9
+    with pytest.raises(LinegraphError, match=r"m\.toml:5: \[body\.a\] inertia: is not symmetric"):
+        with_inertia(f"mass = 1\ninertia = {tensor.tolist()}")

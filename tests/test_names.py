@@ -483,6 +483,27 @@ def test_the_builder_refuses_a_law_whose_x_means_two_things() -> None:
         lg.derive(model)
 
 
+def test_the_builder_refuses_a_component_whose_x_means_two_things() -> None:
+    """Voltage or parameter."""
+    model = lg.Model("m")
+    model.parameter("x", 3.0)
+    model.resistor("R", ("a", "ground"), resistance=1)
+    model.capacitor("C", ("a", "ground"), charge="2*x")
+    with pytest.raises(lg.ModelError, match=r'capacitor "C": "x" is of the component itself here'):
+        lg.derive(model)
+
+
+def test_in_a_joint_called_x_a_transducer_means_its_coordinate() -> None:
+    """A coil in joint x: the force of half L' i² for L = 0.1 + 0.2 x, i = 3 A, is 0.9 N."""
+    model = lg.Model("m", gravity=(0, 0, 0))
+    model.prismatic("x", ("ground", model.body("b", mass=1)), (1, 0, 0), effort=False)
+    model.solenoid("coil", ("a", "ground"), joint="x", inductance="0.1 + 0.2*x")
+    model.current_source("s", ("ground", "a"), current=3)
+    d = lg.derive(model)
+    q, v = [0.4], [0.0] * len(d.structure.velocities)
+    assert abs(d.numeric().bias(q, v)[0]) == pytest.approx(0.9)
+
+
 @pytest.mark.parametrize(
     ("more", "expected"),
     [
@@ -528,6 +549,19 @@ def test_an_input_called_the_rate_of_another_is_an_input_of_its_own() -> None:
     assert space.inputs == ("yaw", "yaw_rate")
     assert sympy.Matrix([[0, 0], [1, 3]]) == space.B
     assert sympy.zeros(2, 2) == space.E
+
+
+def test_a_parameter_s_is_not_the_variable_of_a_transfer_function() -> None:
+    """X'' = -s x + u: 1/(p² + s), never 1/(s² + s)."""
+    model = lg.Model("m")
+    stiffness = model.parameter("s", 4.0)
+    model.prismatic("x", ("ground", model.body("b", mass=1)), (1, 0, 0))
+    model.spring("k", joint="x", stiffness=stiffness)
+    space = lg.derive(model).linearise()
+    with pytest.raises(lg.ModelError, match="the model has a symbol s, too"):
+        space.transfer_function()
+    p, s = sympy.symbols("p s")
+    assert sympy.simplify(space.transfer_function(p)[0] - 1 / (p**2 + s)) == 0
 
 
 # ---- a derivation is a snapshot

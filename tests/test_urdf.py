@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import subprocess
 import sys
 from typing import TYPE_CHECKING
@@ -12,6 +13,7 @@ import pytest
 from urdf_text import ZOO, axis, inertial, joint, link, mimic, origin, robot
 
 from linegraph.derive import derive
+from linegraph.errors import SourceError
 from linegraph.rotation import from_rpy
 from linegraph.urdf import parse, read
 
@@ -335,6 +337,38 @@ WARNINGS = {
         link("ground"),
         'r.urdf:2: link "ground": "ground" is the inertial frame; the link becomes the body "ground_link"',
     ),
+    "rotor": (
+        link("a") + "\n<transmission name='t'><joint name='j'/><actuator name='m'><mechanicalReduction>100"
+        "</mechanicalReduction><motorInertia>2e-5</motorInertia></actuator></transmission>",
+        'r.urdf:3: transmission "t": <mechanicalReduction> 100, <motorInertia> 2e-5: '
+        "ignored, though this may affect the motion",
+    ),
+    "loop_of_a_tool": (
+        link("a") + "\n<loop_joint name='l' type='continuous'/>",
+        "r.urdf:3: robot: <loop_joint> is not known and ignored, though this may affect the motion",
+    ),
+    "constraint_with_a_prefix": (
+        link("a") + "\n<d:ball_constraint xmlns:d='urn:d'><d:ball_constraint_body_A name='a'/>"
+        "</d:ball_constraint>",
+        "r.urdf:3: robot: <d:ball_constraint>: ignored, though this may affect the motion",
+    ),
+    "rotor_with_a_prefix": (
+        link("a") + link("b") + "\n"
+        + joint("j", "a", "b", inner="<d:rotor_inertia xmlns:d='urn:d' value='1'/>"),
+        'r.urdf:3: joint "j": <d:rotor_inertia>: ignored, though this may affect the motion',
+    ),
+    "spring_in_gazebo": (
+        link("a") + "\n<gazebo reference='j'><springStiffness>3</springStiffness><kp>1</kp></gazebo>",
+        'r.urdf:3: gazebo "j": <springStiffness> 3: ignored, though this may affect the motion',
+    ),
+    "loop_in_gazebo": (
+        link("a") + "\n<gazebo><joint name='l' type='revolute'><parent>a</parent></joint></gazebo>",
+        "r.urdf:3: robot: <joint> in <gazebo>: ignored, though this may affect the motion",
+    ),
+    "weightless_in_gazebo": (
+        link("a") + "\n<gazebo reference='a'><turnGravityOff>true</turnGravityOff></gazebo>",
+        'r.urdf:3: gazebo "a": <turnGravityOff> true: ignored, though this may affect the motion',
+    ),
     "prefixes": (
         link("a") + "<drake:x/>\n<foo:y/>",
         "r.urdf:2: XML: undeclared namespace prefixes (drake, foo); what has them is ignored",
@@ -378,6 +412,81 @@ def test_well_known_extensions_are_passed_over_in_silence() -> None:
         '<d:x xmlns:d="urn:d" d:y="1"/>',
     )
     assert parse(text, "r.urdf").warnings == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "<transmission name='t'><actuator name='m'><mechanicalReduction>100</mechanicalReduction>"
+        "<motorInertia>0.0</motorInertia></actuator></transmission>",
+        "<transmission name='t'><joint name='j'><hardwareInterface>x</hardwareInterface></joint>"
+        "</transmission>",
+        "<gazebo reference='a'><mu1>0.2</mu1><turnGravityOff>false</turnGravityOff>"
+        "<sensor><mass/></sensor></gazebo>",
+        "<gazebo><plugin name='p'><leftJoint>j</leftJoint><joint>k</joint></plugin></gazebo>",
+        "<ros2_control name='r' type='system'><joint name='j'><command_interface/></joint></ros2_control>",
+        "<d:proximity_properties xmlns:d='urn:d'/>",
+    ],
+)
+def test_what_does_not_affect_the_motion_is_passed_over_in_silence(text: str) -> None:
+    model = parse(robot(link("a"), link("b"), joint("j", "a", "b"), text), "r.urdf")
+    assert model.warnings == []
+
+
+def test_equal_warnings_are_gathered() -> None:
+    """Of a chain of twelve joints with damping and gains, and links that no body can be."""
+    links = [link(f"l{k}", inertial(tensor=f"1 0 0 1 0 {3 + k}")) for k in range(13)]
+    inner = '<dynamics damping="1"/><controller_gains kp="1"/>'
+    joints = [joint(f"j{k}", f"l{k}", f"l{k + 1}", inner=inner) for k in range(12)]
+    listed = '12 joints ("j0", "j1", "j2" and 9 more)'
+    assert parse(robot(*links, *joints), "r.urdf").warnings == [
+        'r.urdf:2: 13 links ("l0", "l1", "l2" and 10 more): no body has this inertia: '
+        "a principal moment is negative or exceeds the sum of the others",
+        f"r.urdf:15: {listed}: <controller_gains> is not known and ignored",
+        f"r.urdf:15: {listed}: damping and friction are ignored",
+    ]
+
+
+def test_few_warnings_of_a_sort_keep_their_numbers() -> None:
+    links = [link(name, inertial(tensor=f"1 0 0 1 0 {k}")) for k, name in enumerate("abc", 3)]
+    found = parse(robot(*links, joint("j", "a", "b"), joint("k", "b", "c")), "r.urdf").warnings
+    assert [re.findall(r"1, 1, (\d) kg", text) for text in found] == [["3"], ["4"], ["5"]]
+
+
+def test_a_root_that_an_extension_carries_is_told_with_it() -> None:
+    text = '<d:joint xmlns:d="urn:d" name="j" type="universal"/>'
+    with pytest.raises(SourceError, match=r"2 roots; .* not read: <d:joint> \(line 4\)$"):
+        parse(robot(link("a"), link("b"), text), "r.urdf")
+
+
+RENAMED = {
+    "time": (
+        "t",
+        'joint "t": "t" has a meaning of its own in expressions; it becomes the joint "t_joint"',
+    ),
+    "rate": (
+        "j_dot",
+        'joint "j_dot": its coordinate "j_dot" has the name of a rate of joint "j"; it becomes the joint '
+        '"j_dot_joint"',
+    ),
+    "root": (
+        "root_x",
+        'joint "root_x": its coordinate "root_x" has the name of a coordinate of joint "root"; it becomes '
+        'the joint "root_x_joint"',
+    ),
+}
+
+
+@pytest.mark.parametrize("case", RENAMED)
+def test_a_joint_whose_name_meets_another_gives_way(case: str) -> None:
+    name, warning = RENAMED[case]
+    text = robot(*(link(x, inertial()) for x in "abcd"), joint("j", "a", "b"), joint(name, "b", "c"),
+                 joint("k", "c", "d", inner=mimic(name, "2")))  # fmt: skip
+    model = parse(text, "r.urdf", base="floating")
+    assert model.warnings == [f"r.urdf:7: {warning}"]
+    assert coordinates(model)[0][-2:] == ["j", f"{name}_joint"]
+    assert [(c.joint, c.master) for c in model.couplings] == [("k", f"{name}_joint")]
+    derive(model)
 
 
 def test_a_robot_without_name_takes_the_files() -> None:

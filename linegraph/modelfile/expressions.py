@@ -117,7 +117,7 @@ def read_expression(
 
 
 def _own_problem(name: str, names: Names) -> str:
-    if not _declared(name, names):
+    if not _declared(name, names) or name == names.shared:
         return ""
     owner = _owner(name, names)
     return f'"{name}" is of the component itself here, but {owner} has this name too; rename that'

@@ -232,9 +232,22 @@ class At:
         place = f"{component.name}.displacement" if self.integrated else branches[-1].name
         self.x = dag.symbol("s" if self.integrated else "x", place)
         self._laws, self._names, self._ways = laws, names, ways
+        self._who = f'{component.kind} "{component.name}"'
+        # in a joint called x, x is one number, whether the component's own or the coordinate
+        self._joint = getattr(component, "joint", None)
 
     def value(self, given: Any, **own: Scalar) -> Scalar:
-        """A model value as a scalar."""
+        """A model value as a scalar.
+
+        Raises:
+            ModelError: a name of the component's own has another owner, too.
+        """
+        for name in sorted(names_in(given) & own.keys()) if own else ():
+            if name in self._names and not (name == "x" and self._joint == name):
+                problem = (
+                    f'"{name}" is of the component itself here, but something else has this name'
+                )
+                raise ModelError(self._who, f"{problem}; rename that")
         values = self._names.with_own(own) if own else self._names
         return constant(resolver(self._laws.dag, values)(given), self._laws.dag)
 
