@@ -601,8 +601,8 @@ def test_symbolic_constraints_of_a_four_bar() -> None:
 def test_parallelograms_pass_their_singular_position() -> None:
     """IFToMM benchmark A02, N = 2: 10 s by Runge and Kutta's method, projected after every step.
 
-    All rods lie flat about fourteen times. A step of which some stage is too near to that is taken with another
-    size. Compared with the exact equation of its one angle, integrated in the same way, and with the published
+    All rods lie flat ten times. A step of which some stage is too near to that is taken with another size.
+    Compared with the exact equation of its one angle, integrated in the same way, and with the published
     positions, which converge to it with the step.
     """
     from closed_examples import system
@@ -634,7 +634,8 @@ def test_parallelograms_pass_their_singular_position() -> None:
                 ahead = s.project(x[:size], x[size:])
                 slope(np.concatenate(ahead))
             except Failed as failed:
-                assert failed.status == SINGULAR_POSITION.number
+                if failed.status != SINGULAR_POSITION.number:
+                    raise
                 retaken += 1
                 continue
             break

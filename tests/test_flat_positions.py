@@ -121,7 +121,7 @@ def kite() -> Case:
     model.revolute("c", between=(ends["bc"], ends["dc"]), effort=False)
 
     def slopes(psi: float) -> tuple[float, float]:
-        """theta and its derivative by psi."""
+        """Theta and its derivative by psi."""
         x = 0.6 * math.sin(psi)
         return 2 * math.asin(x), 1.2 * math.cos(psi) / math.sqrt(1 - x * x)
 
