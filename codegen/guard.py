@@ -33,8 +33,7 @@ def reads_parameters(module: Module) -> bool:
 def lines(module: Module, program: Program | Routine) -> list[str]:
     """The lines of a function that reports a status."""
     macro, prefix = module.name.upper(), module.name
-    named = failures.constants(module)
-    bad_input, bad_result = (named[x.number, x.name][0] for x in (NOT_FINITE_INPUT, NOT_FINITE))
+    bad_input, bad_result = (f"{macro}_{x.name}" for x in (NOT_FINITE_INPUT, NOT_FINITE))
     results = [result for result in program.results if math.prod(result.shape)]
     names = [argument.name for argument in program.arguments]
     names += [_local(x) if x in results else x.name for x in program.results]

@@ -28,7 +28,8 @@ _WIDTH = 96
 def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
     """The one file of a module; no option concerns it."""
     statuses = layout.statuses(module)
-    bodies = {program.name: _body(module, program) for program in module.programs}
+    notation = _notation(module)
+    bodies = {program.name: _body(module, program, notation) for program in module.programs}
     alone = any(_sizes(program) for program in module.programs)
     smooth = analytic(module)
     text = templates.fill(
@@ -187,7 +188,7 @@ def _sizes(program: Program | Routine) -> str:
     return ", ".join(str(math.prod(result.shape)) for result in program.results) + ","
 
 
-def _body(module: Module, program: Program | Routine) -> list[str]:
+def _body(module: Module, program: Program | Routine, notation: Notation) -> list[str]:
     """The lines of a private function: arguments and results are lists of components."""
     if program.handed:
         return routines.handed(module, program, "python", "_")
@@ -197,7 +198,7 @@ def _body(module: Module, program: Program | Routine) -> list[str]:
     for call in program.calls:
         results = ", ".join(result.name for result in call.results)
         lines.append(f"    {results} = _{call.program}({', '.join(call.arguments)})")
-    body = print_program(program, _notation(module))
+    body = print_program(program, notation)
     lines += body.lines
     for result, entries in zip(program.results, body.results, strict=True):
         lines += [f"    {result.name} = [", *_filled(entries), "    ]"]
@@ -261,8 +262,8 @@ def analytic(module: Module) -> set[str]:
 def _is_smooth(program: Program) -> bool:
     """Whether a program applies smooth functions only to what depends on more than parameters and time."""
     live = live_nodes(program)
-    varying = straight.varying(program, live)
-    return all(x.op not in ARITY or x.op in _SMOOTH or x.index not in varying for x in live)
+    kinked = [x.index for x in live if x.op in ARITY and x.op not in _SMOOTH]
+    return not kinked or straight.varying(program, live).isdisjoint(kinked)
 
 
 def _notation(module: Module) -> Notation:

@@ -1,7 +1,9 @@
 """Differentiation of the expression DAG, and rewriting it: what is derived from it stays a DAG.
 
 A *gradient* is sparse: only the symbols that a node depends on have an entry. Functions that have a kink
-(abs, sign, min, max) are differentiated on each side of it.
+(abs, min, max) have the derivative of one side there: abs that of positive numbers, min and max that of
+their first argument, or of the second one where the first is constant. Powers such as x^(3/2) are
+differentiated as powers, whose derivatives are finite where those of the root in them are not.
 """
 
 from __future__ import annotations
@@ -11,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 from linegraph.errors import ModelError
 from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL, Dag, Node
 from linegraph.jets import derivatives
+from linegraph.powers import power
+from linegraph.roots import Roots
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping
@@ -55,6 +59,8 @@ class Calculus:
         self._chain = chain or {}
         self._gradients: dict[int, Gradient] = {}
         self._supports: dict[int, frozenset[Symbol]] = {}
+        self._kinked: dict[int, bool] = {}
+        self._roots = Roots(dag)
 
     def support(self, x: Scalar) -> frozenset[Symbol]:
         """The symbols that a scalar depends on."""
@@ -89,11 +95,41 @@ class Calculus:
         if node.op == SYMBOL:
             symbol = (node.a, node.b)
             return {} if node.a in self._constants else dict(self._chain.get(symbol, {symbol: 1}))
+        if node.op == "sqrt" and node.a.op == MUL and node.a.a is node.a.b:
+            # the root of a square is an absolute value, and has the slopes of one
+            return _combined([(self._side(node.a.a), self._gradients[node.a.a.index])])
+        if node.op in _STEEP and self._has_kink(node.a):
+            return self._steep(node)
+        rooted = self._roots.power_in(node)
+        if rooted is not None:
+            base, e, rest = rooted.base, rooted.exponent, rooted.rest
+            of_base = e * (rest * power(base, e - 1, self.dag))
+            return _combined(
+                [(of_base, self.gradient(base)), (power(base, e, self.dag), self.gradient(rest))]
+            )
+        parts = zip(self._partials(node), operands(node), strict=True)
+        return _combined((factor, self._gradients[x.index]) for factor, x in parts)
+
+    def _steep(self, node: Node) -> Gradient:
+        """Of a function whose slope may be infinite, of an argument that may be constant there.
+
+        sqrt(max(x, 0)) is 0 for negative x, and so is its derivative: 0 over 0 counts as 0.
+        """
+        divisor = _STEEP[node.op](self.dag, node)
         found: Gradient = {}
-        for operand, factor in zip(operands(node), self._partials(node), strict=True):
-            for symbol, slope in self._gradients[operand.index].items():
-                found[symbol] = found.get(symbol, 0) + factor * slope
-        return {symbol: slope for symbol, slope in found.items() if slope != 0}
+        for symbol, slope in self._gradients[node.a.index].items():
+            moves = self.dag.function("sign", slope)
+            found[symbol] = slope / (divisor + (1 - moves * moves))
+        return {symbol: -x for symbol, x in found.items()} if node.op == "acos" else found
+
+    def _has_kink(self, x: Scalar) -> bool:
+        """Whether a scalar depends on what may be constant on one side: abs, min, max."""
+        if not isinstance(x, Node):
+            return False
+        for node in _below(x, self._kinked):
+            own = node.op in ("abs", "min", "max")
+            self._kinked[node.index] = own or any(self._kinked[p.index] for p in operands(node))
+        return self._kinked[x.index]
 
     def _partials(self, node: Node) -> list[Scalar]:
         """The derivatives of one operation by those of its operands that are nodes."""
@@ -119,7 +155,7 @@ class Calculus:
     def slope(self, node: Node) -> Scalar:
         """The derivative of a function of one argument."""
         if node.op == "abs":
-            return self.dag.function("sign", node.a)
+            return self._side(node.a)
         if node.op == "sign":
             return 0
         found = derivatives(node.op, self.dag, node.a, node)
@@ -127,15 +163,43 @@ class Calculus:
             raise ModelError("", f"{node.op}(...) has no derivative")
         return found[0]
 
+    def _side(self, x: Scalar) -> Scalar:
+        """1 where x is not negative, else -1."""
+        sign = self.dag.function("sign", x)
+        return sign + (1 - sign * sign)
+
     def _slopes(self, node: Node) -> tuple[Scalar, Scalar]:
         """Of a function of two arguments."""
         a, b = node.a, node.b
         if node.op == "atan2":
             squared = a * a + b * b
             return b / squared, -a / squared
-        side = self.dag.function("sign", a - b)
-        share = (1 + side) / 2 if node.op == "max" else (1 - side) / 2
+        if not self.gradient(a):
+            return 0, self._share(node.op, b, a)
+        share = self._share(node.op, a, b)
         return share, 1 - share
+
+    def _share(self, op: str, a: Scalar, b: Scalar) -> Scalar:
+        """1 where min(a, b) or max(a, b) is a, which it is where both are the same; else 0."""
+        side = self.dag.function("sign", a - b if op == "max" else b - a)
+        return 1 + side * (1 - side) / 2
+
+
+def _combined(parts: Iterable[tuple[Scalar, Gradient]]) -> Gradient:
+    """The sum of gradients times factors."""
+    found: Gradient = {}
+    for factor, slopes in parts:
+        for symbol, slope in slopes.items():
+            found[symbol] = found.get(symbol, 0) + factor * slope
+    return {symbol: slope for symbol, slope in found.items() if slope != 0}
+
+
+_STEEP: dict[str, Callable[[Dag, Node], Scalar]] = {
+    "sqrt": lambda dag, node: 2 * node,
+    "asin": lambda dag, node: dag.sqrt(1 - node.a * node.a),
+    "acos": lambda dag, node: dag.sqrt(1 - node.a * node.a),
+}
+"""Functions whose slope is infinite at the end of their range, with what it is divided by."""
 
 
 class Sizes:

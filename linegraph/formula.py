@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 from linegraph.errors import ModelError
 from linegraph.functions import ARITY
+from linegraph.powers import power, quotient
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -36,9 +37,6 @@ LARGEST_EXPONENT = 300
 
 LONGEST_NUMBER = 100
 """Characters of a literal."""
-
-LARGEST_NUMBER = 4096
-"""Bits of an exact power."""
 
 CONSTANTS = {"pi": math.pi}
 RATE = "der"
@@ -255,35 +253,10 @@ def _apply(op: str, operands: list[Scalar], algebra: Algebra) -> Scalar:
     if op == "*":
         return operands[0] * operands[1]
     if op == "/":
-        return _quotient(*operands)
+        return quotient(*operands)
     if op == "**":
         return power(operands[0], operands[1], algebra)
     return algebra.function(op, *operands)
-
-
-def _quotient(a: Scalar, b: Scalar) -> Scalar:
-    if isinstance(b, (int, float, Fraction)) and b == 0:
-        raise ModelError("", "division by zero")
-    exact = isinstance(a, (int, Fraction)) and isinstance(b, (int, Fraction))
-    return Fraction(a) / Fraction(b) if exact else a / b
-
-
-def power(base: Scalar, exponent: Fraction | int, algebra: Algebra) -> Scalar:
-    """Integer and half-integer powers by products, one root and one division."""
-    if isinstance(base, (int, Fraction)):
-        size = max(base.numerator.bit_length(), base.denominator.bit_length())
-        if size * abs(float(exponent)) > LARGEST_NUMBER:
-            raise ModelError("", "a power of numbers is too large")
-    whole, half = divmod(abs(2 * Fraction(exponent)), 2)
-    result: Scalar = algebra.sqrt(base) if half else 1
-    square = base
-    count = int(whole)
-    while count:
-        if count % 2:
-            result = result * square
-        count //= 2
-        square = square * square if count else square
-    return _quotient(1, result) if exponent < 0 else result
 
 
 def _refuse_notation(text: str) -> None:

@@ -10,9 +10,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from linegraph.errors import ModelError
+from linegraph.powers import power
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from fractions import Fraction
 
     from linegraph.algebra import Algebra
     from linegraph.vector import Scalar
@@ -91,6 +93,15 @@ class Jets:
     def sqrt(self, x: Scalar) -> Jet:
         """Square root."""
         return self.function("sqrt", x)
+
+    def power(self, base: Scalar, exponent: Fraction) -> Jet:
+        """A half-integer power: its derivatives are finite where those of the root in it are not."""
+        a = lifted(base)
+        y, first, second = (
+            factor * power(a.x, exponent - order, self._base) if factor else 0
+            for order, factor in enumerate((1, exponent, exponent * (exponent - 1)))
+        )
+        return Jet(y, first * a.dx, second * (a.dx * a.dx) + first * a.ddx)
 
     def function(self, name: str, *x: Scalar) -> Jet:
         """Any smooth function of `functions.ARITY`.

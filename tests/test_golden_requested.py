@@ -127,7 +127,8 @@ def test_corrupted_python_fails(name: str, function: str, tmp_path: Path) -> Non
     # what is called: the function's own lines, or those of its twin that takes constants
     twin = f"_{function}_prepared"
     called = twin if f"return {twin}(_prepare(" in files[f"{name}.py"] else f"_{function}"
-    start = next(k for k, x in enumerate(lines) if x.startswith(f"def {called}("))
+    heads = (f"def {called}_core(", f"def {called}(")
+    start = next(k for head in heads for k, x in enumerate(lines) if x.startswith(head))
     stop = next(k for k in range(start + 1, len(lines)) if lines[k].startswith("def "))
     sums = [k for k in range(start, stop) if re.match(r"    t\d+ = .* [-+] ", lines[k])]
     sums = sums[:: 1 + len(sums) // 50]

@@ -36,7 +36,9 @@ OVERSIZE: dict[str, str] = {}
 LAYERS: tuple[tuple[str, ...], ...] = (
     ("errors", "version", "vector", "vectors", "coupling", "outputs", "notation", "tolerance"),
     ("domains", "files", "functions", "graph", "pivoting"),
+    ("powers",),
     ("algebra", "expression", "formula", "jets"),
+    ("roots",),
     ("differentiation", "residues", "traced"),
     ("coriolis", "sympy_walk"),
     ("simplification",),

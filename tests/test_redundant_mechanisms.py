@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import TYPE_CHECKING, Any
 
@@ -27,17 +28,9 @@ STATES = 3
 TOLERANCE = 1e-8  # measured 2e-10
 
 
-def of_names(
-    names: Sequence[str], rng: np.random.Generator, size: float, units: Sequence[str]
-) -> Any:
-    """A number of size 1 for each coordinate or velocity, lengths in the mechanism's own; cranks are parallel."""
-    angle = rng.uniform(0.7, 1.2)
-    found = []
-    for name, unit in zip(names, units, strict=True):
-        x = rng.normal() * (size if unit.startswith("m") else 1.0)
-        x = {"foot": angle, "hand": -angle}.get(name[:4], x)
-        found.append(x)
-    return np.array(found)
+def drawn(rng: np.random.Generator, size: float, units: Sequence[str]) -> Any:
+    """A number of size 1 for each coordinate or velocity, times the size of the mechanism for lengths."""
+    return np.array([rng.normal() * (size if unit.startswith("m") else 1.0) for unit in units])
 
 
 def normalised(names: Sequence[str], q: Any) -> Any:
@@ -52,6 +45,7 @@ class Asked:
     """Both mechanisms in Python, at the same states."""
 
     def __init__(self, pair: Pair, folder: Path) -> None:
+        """Derive and emit both."""
         self.pair = pair
         self.trees = [derive(model).structure for model in (pair.whole, pair.plain)]
         self.modules = [
@@ -73,10 +67,11 @@ class Asked:
             for tree in self.trees:
                 quantities = getattr(tree, of)
                 names = [quantity.name for quantity in quantities]
-                x = of_names(names, rng, size, [quantity.unit for quantity in quantities])
+                x = drawn(rng, size, [quantity.unit for quantity in quantities])
                 x = np.array([known.setdefault(n, y) for n, y in zip(names, x, strict=True)])
                 alike = known.get("foot0")
-                if alike is not None:
+                if alike is not None:  # cranks that are parallel, of any angle that is not flat
+                    alike = known["foot0"] = 0.7 + 0.5 * abs(math.sin(alike))
                     x = np.array([alike if n.startswith("foot") else -alike for n in names])
                 found[what].append(normalised(names, x) if what == 0 else x)
         units = [quantity.unit for quantity in self.trees[1].inputs]

@@ -59,7 +59,9 @@ class Complexes:
         return self.function("sqrt", x)
 
     def function(self, name: str, *x: Scalar) -> Scalar:
-        """Any function of `functions.ARITY`; at a kink halfway between its sides.
+        """Any function of `functions.ARITY`; at a kink one side of it.
+
+        Of abs it is that of positive numbers, of min and max that of their first complex argument.
 
         Raises:
             ModelError: the function has no finite value there.
@@ -69,19 +71,18 @@ class Complexes:
         z = [complex(part) for part in x]
         real = of_numbers(name, *(part.real for part in z))
         if name in _OWN:
-            return _OWN[name](*z)
+            return _OWN[name](*(x if name in ("min", "max") else z))
         try:
             return complex(real, getattr(cmath, name)(*z).imag)
         except (ValueError, OverflowError):
             raise ModelError("", f"{name}({z[0].real}) has no finite derivative") from None
 
 
-def _side(x: complex) -> int:
-    return (x.real > 0) - (x.real < 0)
-
-
-def _larger(a: complex, b: complex) -> complex:
-    return (a + b + _side(a - b) * (a - b)) / 2
+def _larger(a: Scalar, b: Scalar) -> complex:
+    first, second = complex(a), complex(b)
+    if first.real == second.real:
+        return first if isinstance(a, complex) else second
+    return first if first.real > second.real else second
 
 
 def _angle(y: complex, x: complex) -> complex:
@@ -91,8 +92,8 @@ def _angle(y: complex, x: complex) -> complex:
 
 
 _OWN: dict[str, Callable[..., complex]] = {
-    "abs": lambda x: _side(x) * x,
-    "sign": lambda x: complex(_side(x)),
+    "abs": lambda x: x if x.real >= 0 else -x,
+    "sign": lambda x: complex((x.real > 0) - (x.real < 0)),
     "min": lambda a, b: -_larger(-a, -b),
     "max": _larger,
     "atan2": _angle,
