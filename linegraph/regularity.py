@@ -209,8 +209,8 @@ def _failing(tree: KinematicTree, seed: int, added: Sequence[Entry]) -> tuple[li
 def _scales(tree: KinematicTree, crossed: Sequence[Arm], carried: list[Moments]) -> list[float]:
     """What each coordinate's inertia would be in the worst direction: zero is judged beside it.
 
-    A turn about any axis through the joint, with the mass as far from it as it is, and a shift of all mass. An
-    arm that is rounding beside the model's own lengths is none.
+    A turn about any axis through the joint, with the mass as far from it as it is, and a shift of all mass.
+    An arm that is rounding beside the model's own lengths is none.
     """
     scales = [0.0] * len(tree.velocities)
     arm = DUST * _reach(tree)

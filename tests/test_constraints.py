@@ -602,14 +602,16 @@ def test_symbolic_constraints_of_a_four_bar() -> None:
 def test_parallelograms_pass_their_singular_position() -> None:
     """IFToMM benchmark A02, N = 2: 10 s by Runge and Kutta's method, projected after every step.
 
-    All rods lie flat about fourteen times. Compared with the exact equation of its one angle, integrated in
-    the same way, and with the published positions, which converge to it with the step.
+    All rods lie flat ten times. A step of which some stage is too near to that is taken with another size.
+    Compared with the exact equation of its one angle, integrated in the same way, and with the published
+    positions, which converge to it with the step.
     """
     from closed_examples import system
+    from compiled import Failed
 
     s = system("parallelograms")
     q, v = s.call("complete", np.zeros(s.py.NQ), [0.0], [-1.0], out=[(s.py.NQ,), (s.py.NV,)])
-    h, size = 5e-4, s.py.NQ
+    size, t, retaken = s.py.NQ, 0.0, 0
     one = np.array([0.0, 1.0])
 
     def slope(x: np.ndarray) -> np.ndarray:
@@ -619,16 +621,29 @@ def test_parallelograms_pass_their_singular_position() -> None:
     def exact(x: np.ndarray) -> np.ndarray:
         return np.array([x[1], 3.5 / 3 * 9.81 * math.sin(x[0])])
 
-    def step(f: Callable[[np.ndarray], np.ndarray], x: np.ndarray) -> np.ndarray:
+    def step(f: Callable[[np.ndarray], np.ndarray], x: np.ndarray, h: float) -> np.ndarray:
         k1 = f(x)
         k2 = f(x + h / 2 * k1)
         k3 = f(x + h / 2 * k2)
         return x + h / 6 * (k1 + 2 * k2 + 2 * k3 + f(x + h * k3))
 
-    for _ in range(20000):
-        x = step(slope, np.concatenate([q, v]))
-        q, v = s.project(x[:size], x[size:])
-        one = step(exact, one)
+    while t < 10:
+        for share in (1, 1.5, 2, 3, 4, 6):
+            h = min(share * 2e-3, 10 - t)
+            try:
+                x = step(slope, np.concatenate([q, v]), h)
+                ahead = s.project(x[:size], x[size:])
+                slope(np.concatenate(ahead))
+            except Failed as failed:
+                if failed.status != SINGULAR_POSITION.number:
+                    raise
+                retaken += 1
+                continue
+            break
+        else:
+            raise AssertionError(f"no step passes at {t} s")
+        (q, v), t, one = ahead, t + h, step(exact, one, h)
+    assert retaken > 0
     place = [-math.sin(q[0]), math.cos(q[0])]
     assert place == pytest.approx([math.sin(one[0]), math.cos(one[0])], abs=1e-7)
     assert place == pytest.approx([0.3284583, 0.9445185], abs=2e-6)
