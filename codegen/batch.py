@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from codegen import declare, layout, prose, straight
+from codegen.frames import Frame
 from codegen.straight import SHARED, Kind
 from linegraph.functions import ARITY
 from linegraph.program import PREPARED_SUFFIX, Program
@@ -13,7 +14,7 @@ from linegraph.program import PREPARED_SUFFIX, Program
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from codegen.straight import Definition
+    from codegen.frames import Definition
     from linegraph.program import Argument, Module, Result, Routine
 
 NAMES = (
@@ -59,6 +60,17 @@ class Batch:
     one: list[str]
 
     @property
+    def frame(self) -> Frame:
+        """What the function of many states keeps."""
+        return Frame(
+            registers=sum(max(rows.size, 1) for rows in (*self.given, *self.found)),
+            ints=1,
+            parameters=1 + len(self.one),
+            wide=True,
+            calls={self.name, f"{self.name}_lanes", "gather", "scatter"},
+        )
+
+    @property
     def wide(self) -> str:
         """What the function of registers is called with."""
         rows = {x.name for x in (*self.given, *self.found)}
@@ -86,11 +98,11 @@ def left_out(module: Module, batches: Sequence[Batch]) -> list[str]:
 
 def elementwise(module: Module, wide: Sequence[Definition]) -> list[tuple[str, str, int]]:
     """The functions, other than sine and cosine, that are called lane by lane: name, C's name, arity."""
-    text = "\n".join(line for _, body in wide for line in body)
+    called = frozenset[str]().union(*(definition.frame.calls for definition in wide))
     return [
         (name, straight.function(module, name), arity)
         for name, arity in ARITY.items()
-        if f"{module.name}_lanes_{name}(" in text
+        if f"lanes_{name}" in called
     ]
 
 

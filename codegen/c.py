@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,8 @@ from codegen import (
     batch,
     declare,
     failures,
+    frames,
+    guard,
     layout,
     naming,
     packages,
@@ -22,6 +23,7 @@ from codegen import (
     templates,
 )
 from codegen.declare import block, comment, string
+from codegen.frames import Definition
 from codegen.options import DEFAULT
 from codegen.printer import number
 from linegraph.program import Routine
@@ -54,6 +56,7 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
         "small": real.TOLERANCES[options.real],
         "ok": f"{macro}_{failures.OK}",
         "failures": _failures(module),
+        "guards_parameters": guard.reads_parameters(module),
     }
     kind = straight.Kind(inline=options.trig == "inline", real=options.real)
     functions = [x for program in module.programs for x in _define(module, program, statuses, kind)]
@@ -62,7 +65,7 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
         "c/source.c.jinja",
         functions=functions,
         batches=batches,
-        helpers=routines.helpers(module),
+        helpers=[*guard.helpers(module), *routines.helpers(module)],
         w_at=routines.independent(module),
         quaternions=routines.quaternions(module),
         needs=_needs(module, functions, wide),
@@ -70,19 +73,21 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
         **common,
     )
     source = real.written(source, options.real)
-    sizes = {f"{macro}_{name}": size for name, size in layout.counts(module).items()}
-    taken = stack.bounds(source, sizes)
+    known = frames.of_helpers(frames.Counts(layout.counts(module)))
+    known |= {x.name: x.frame for x in (*functions, *wide)}
+    known |= {f"{x.name}_batch": x.frame for x in batches}
+    taken = stack.bounds(known, options.real)
     header = templates.fill(
         "c/header.h.jinja",
         head=block(layout.head(module)),
-        deepest=max(taken.values(), default=0),
-        report=block(report.table(module, source, taken)) if options.report else [],
+        deepest=_deepest(module, taken, batches),
+        report=block(report.table(module, functions, taken)) if options.report else [],
         counts=list(layout.counts(module).items()),
         functions=[
             (_document(module, x, taken), declare.signature(module, x, statuses))
             for x in module.programs
         ],
-        batches=[(_with_stack(x, module, taken), x.signature) for x in batches],
+        batches=[(_with_stack(x, taken), x.signature) for x in batches],
         left_out=block(batch.left_out(module, batches)) if options.batch else [],
         **common,
     )
@@ -95,33 +100,39 @@ def _define(
     program: Program | Routine,
     statuses: dict[str, dict[int, str]],
     kind: straight.Kind,
-) -> list[straight.Definition]:
+) -> list[Definition]:
     """A function, after what it is made of."""
-    head, prefix = declare.signature(module, program, statuses), f"{module.name}_"
+    dialect = routines.Dialect("c", f"{module.name}_", passed=True)
+    core = bool(statuses[program.name]) and not program.handed
+    name, head = program.name, declare.signature(module, program, statuses, core=core)
     if program.handed:
-        return [(head, routines.handed(module, program, "c", prefix))]
+        frame = routines.handed_frame(module, program)
+        return [Definition(name, head, routines.handed(module, program, dialect), frame)]
     if isinstance(program, Routine):
-        return [
-            (head, routines.body(module, program, "c", prefix, small=real.TOLERANCES[kind.real]))
-        ]
-    return straight.define(module, program, statuses, kind)
+        lines = routines.body(module, program, dialect, small=real.TOLERANCES[kind.real])
+        frame = routines.frame(module, program)
+        made = [Definition(name + declare.CORE * core, head, lines, frame)]
+    else:
+        made = straight.define(module, program, statuses, kind)
+    return [*made, guard.definition(module, program, statuses)] if core else made
 
 
-def _needs(
-    module: Module, functions: Sequence[straight.Definition], wide: Sequence[straight.Definition]
-) -> set[str]:
+def _deepest(module: Module, taken: Mapping[str, int], batches: Sequence[batch.Batch]) -> int:
+    """The most stack that a function takes which users call."""
+    names = [*(x.name for x in module.programs), *(f"{x.name}_batch" for x in batches)]
+    return max((taken[name] for name in names), default=0)
+
+
+def _needs(module: Module, functions: Sequence[Definition], wide: Sequence[Definition]) -> set[str]:
     """What stands at the head of the source only where some function uses it."""
-    name = module.name
-    text = "\n".join(line for _, body in (*functions, *wide) for line in body)
-    heads = "\n".join(head for head, _ in (*functions, *wide))
+    called = frozenset[str]().union(*(x.frame.calls for x in (*functions, *wide)))
     marks = {
-        "sign": f"{name}_sign_of",
-        "one": f"{name}_sincos",
-        "all": f"{name}_all_sincos",
-        "lanes_sincos": f"{name}_lanes_sincos",
+        **{own: f"{own}_of" for own in straight.OWN},
+        **{"one": "sincos", "all": "all_sincos", "lanes_sincos": "lanes_sincos"},
     }
-    found = {key for key, mark in marks.items() if re.search(rf"\b{mark}\(", text)}
-    return found | ({"part"} if f"{name.upper()}_PART " in heads else set())
+    found = {key for key, mark in marks.items() if mark in called}
+    part = f"{module.name.upper()}_PART "
+    return found | {"part"} if any(x.head.startswith(part) for x in (*functions, *wide)) else found
 
 
 def _remark(quantity: Quantity) -> str:
@@ -141,7 +152,7 @@ def _names(macro: str, listing: Listing) -> tuple[str, str, str, list[str]]:
 def _failures(module: Module) -> list[str]:
     """The lines of constants for statuses, if any function returns one."""
     found = failures.constants(module)
-    if not found and not any(program.status for program in module.programs):
+    if not found:
         return []
     rows = [(f"{module.name.upper()}_{failures.OK}", 0, "the outputs are written")]
     rows += [(name, key[0], "; or ".join(about)) for key, (name, about) in found.items()]
@@ -156,9 +167,9 @@ def _failures(module: Module) -> list[str]:
     return lines
 
 
-def _with_stack(found: batch.Batch, module: Module, taken: Mapping[str, int]) -> list[str]:
+def _with_stack(found: batch.Batch, taken: Mapping[str, int]) -> list[str]:
     """The comment above a function of many states."""
-    return [*found.document, *block(_stack(taken[f"{module.name}_{found.name}_batch"]))]
+    return [*found.document, *block(_stack(taken[f"{found.name}_batch"]))]
 
 
 def _stack(size: int) -> list[str]:
@@ -179,6 +190,4 @@ def _document(module: Module, program: Program | Routine, taken: Mapping[str, in
     if found:
         texts = "; ".join(f"{name} ({number}): {about}" for number, about, name in found)
         lines += prose.paragraph(f"@return {ok} (0), or with all outputs untouched {texts}", 4)
-    elif program.status:
-        lines += prose.paragraph(f"@return {ok} (0): it cannot fail")
-    return block([*lines, *_stack(taken[f"{module.name}_{program.name}"])])
+    return block([*lines, *_stack(taken[program.name])])

@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 
 _WIDTH = 100
 
+CORE = "_core"
+"""How the name of a function ends that does the work of one that reports a status."""
+
 
 def comment(text: str) -> str:
     """Any text as part of a comment, which it cannot end, continue or nest."""
@@ -43,13 +46,19 @@ def escape(text: str) -> str:
 
 
 def signature(
-    module: Module, program: Program | Routine, statuses: dict[str, dict[int, str]]
+    module: Module,
+    program: Program | Routine,
+    statuses: dict[str, dict[int, str]],
+    *,
+    core: bool = False,
 ) -> str:
-    """The head of a public function."""
+    """The head of a public function, or of the function behind it that does the work."""
     parts = [argument(module, x) for x in program.arguments]
     parts += [result(module, x) for x in program.results]
-    returned = "int" if program.status or statuses[program.name] else "void"
-    return head(f"{returned} {module.name}_{program.name}(", parts)
+    returned = "int" if statuses[program.name] else "void"
+    if core:
+        returned = f"{module.name.upper()}_PART {returned}"
+    return head(f"{returned} {module.name}_{program.name}{CORE * core}(", parts)
 
 
 def head(start: str, parts: Sequence[str]) -> str:

@@ -1,4 +1,7 @@
-"""Named constants for what functions return where they cannot compute."""
+"""Statuses: what functions report where they cannot compute, and the names of these reports.
+
+A function that reports a status at all reports arguments and results that are not finite, too.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from codegen import naming
 from linegraph.program import Routine, Status
+from linegraph.statuses import NOT_FINITE, NOT_FINITE_INPUT
 
 if TYPE_CHECKING:
     from linegraph.program import Module, Program
@@ -18,20 +22,34 @@ OK = "OK"
 def own(program: Program | Routine) -> tuple[Status, ...]:
     """What a function itself returns, not what it passes on."""
     if isinstance(program, Routine):
-        return program.statuses
-    return tuple(dict.fromkeys(Status(x.status, x.about, x.name) for x in program.checks))
+        found = program.statuses
+    else:
+        found = tuple(dict.fromkeys(Status(x.status, x.about, x.name) for x in program.checks))
+    return (NOT_FINITE_INPUT, NOT_FINITE, *found) if program.status or found else ()
+
+
+def called(program: Program | Routine) -> tuple[str, ...]:
+    """The functions that a function calls."""
+    if isinstance(program, Routine):
+        return program.uses
+    return tuple(call.program for call in program.calls)
 
 
 def constants(module: Module) -> dict[tuple[int, str], tuple[str, list[str]]]:
     """For every number and name of a status: the constant, in capitals, and all that it means.
 
     Constants of different numbers differ, whatever the joints are called.
+
+    Raises:
+        ValueError: two statuses have the same number.
     """
     found: dict[tuple[int, str], tuple[str, list[str]]] = {}
     taken: set[str] = set()
     for status in sorted(set(chain(*map(own, module.programs)))):
         key = (status.number, status.name)
         if key not in found:
+            if any(number == status.number for number, _ in found):
+                raise ValueError(f"two statuses have the number {status.number}")
             name = _name(status)
             while name in taken:
                 name = f"{name}_{status.number}"
@@ -40,6 +58,11 @@ def constants(module: Module) -> dict[tuple[int, str], tuple[str, list[str]]]:
         if status.about not in found[key][1]:
             found[key][1].append(status.about)
     return found
+
+
+def name_of(module: Module, constant: str) -> str:
+    """The name of a status without the name of the module, for languages that need none."""
+    return constant.removeprefix(f"{module.name.upper()}_")
 
 
 def of(module: Module, program: Program | Routine) -> list[Status]:
@@ -52,9 +75,8 @@ def of(module: Module, program: Program | Routine) -> list[Status]:
         now = pending.pop()
         for number, about, name in own(now):
             found[Status(number, about, named[number, name][0])] = None
-        called = now.uses if isinstance(now, Routine) else tuple(x.program for x in now.calls)
-        pending += [programs[x] for x in called if x not in seen]
-        seen.update(called)
+        pending += [programs[x] for x in called(now) if x not in seen]
+        seen.update(called(now))
     return sorted(found)
 
 

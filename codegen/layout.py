@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from itertools import chain
 from typing import TYPE_CHECKING
 
-from codegen import prose
-from linegraph.program import Listing, Routine
+from codegen import failures, prose
+from linegraph.program import Listing
 
 if TYPE_CHECKING:
-    from linegraph.program import Module, Program, Quantity, Result
+    from linegraph.program import Module, Quantity, Result
 
 _SIZES = {
     **dict.fromkeys(("q", "qdot", "q_on"), ("NQ",)),
@@ -91,22 +90,7 @@ def default(parameter: Quantity) -> float:
 
 def statuses(module: Module) -> dict[str, dict[int, str]]:
     """For each function: what each status other than 0 means; empty where it cannot fail."""
-    programs = {program.name: program for program in module.programs}
-    found: dict[str, dict[int, str]] = {}
-
-    def visit(program: Program | Routine) -> dict[int, str]:
-        if program.name not in found:
-            own: dict[int, str] = {}
-            if isinstance(program, Routine):
-                called, reasons = program.uses, [(x.number, x.about) for x in program.statuses]
-            else:
-                called = tuple(call.program for call in program.calls)
-                reasons = [(check.status, check.about) for check in program.checks]
-            inherited = (visit(programs[name]).items() for name in called)
-            for status, about in chain(*inherited, reasons):
-                known = own.get(status, about)
-                own[status] = known if about in known else f"{known}; or {about}"
-            found[program.name] = own
-        return found[program.name]
-
-    return {program.name: visit(program) for program in module.programs}
+    return {
+        program.name: {status.number: status.about for status in failures.of(module, program)}
+        for program in module.programs
+    }

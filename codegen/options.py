@@ -20,7 +20,7 @@ REAL = real.NAMES
 
 @dataclass(frozen=True)
 class Options:
-    """Choices that concern one language and change no value beyond rounding; all are about C alone.
+    """Choices that concern some languages only and change no value beyond rounding; today all are about C.
 
     Attributes:
         trig: one of `TRIG`.
@@ -64,6 +64,9 @@ class Options:
 
 DEFAULT = Options()
 
+NAMES = frozenset(field.name for field in fields(Options))
+"""Of all options."""
+
 
 def options_of(choices: Mapping[str, object]) -> Options:
     """Options by name.
@@ -75,8 +78,8 @@ def options_of(choices: Mapping[str, object]) -> Options:
         >>> options_of({"real": "float"}).real
         'float'
     """
-    known = [field.name for field in fields(Options)]
     for name in choices:
-        if name not in known:
-            raise ModelError(f'option "{name}"', f"is not known; known: {', '.join(known)}")
+        if name not in NAMES:
+            known = ", ".join(field.name for field in fields(Options))
+            raise ModelError(f'option "{name}"', f"is not known; known: {known}")
     return Options(**choices)  # type: ignore[arg-type]

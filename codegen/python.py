@@ -10,11 +10,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from codegen import layout, prose, routines, templates
+from codegen import failures, layout, prose, routines, straight, templates
 from codegen.options import DEFAULT
 from codegen.printer import Notation, number, print_program
 from linegraph.functions import ARITY
-from linegraph.program import Program, Routine
+from linegraph.program import Program, Routine, live_nodes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -24,14 +24,19 @@ if TYPE_CHECKING:
 
 _WIDTH = 96
 
+_DIALECT = routines.Dialect("python", "_", passed=False, checked="_as_in_c")
+
 
 def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
     """The one file of a module; no option concerns it."""
     statuses = layout.statuses(module)
-    bodies = {program.name: _body(module, program) for program in module.programs}
+    notation = _notation(module)
+    bodies = {program.name: _body(module, program, notation) for program in module.programs}
     alone = any(_sizes(program) for program in module.programs)
+    smooth = analytic(module)
     text = templates.fill(
         "python/module.py.jinja",
+        statuses=_statuses(module),
         unary=_called(bodies, 1),
         binary=_called(bodies, 2),
         name=module.name,
@@ -51,10 +56,14 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
             {
                 "name": program.name,
                 "arguments": ", ".join(argument.name for argument in program.arguments),
-                "document": _document(module, program, statuses[program.name]),
-                "wrapper": _wrapper(module, program),
+                "document": _document(
+                    module, program, statuses[program.name], smooth=program.name in smooth
+                ),
+                "wrapper": _wrapper(module, program, smooth=program.name in smooth),
                 "body": bodies[program.name],
                 "sizes": _sizes(program),
+                "given": _given(program),
+                "reports": bool(statuses[program.name]) and not program.handed,
             }
             for program in module.programs
         ],
@@ -103,7 +112,9 @@ def _remark(quantity: Quantity) -> list[str]:
     return _indented(prose.paragraph(f"{quantity.name}{unit}: {quantity.about}", 4), 8)
 
 
-def _document(module: Module, program: Program | Routine, statuses: dict[int, str]) -> list[str]:
+def _document(
+    module: Module, program: Program | Routine, statuses: dict[int, str], *, smooth: bool
+) -> list[str]:
     """The lines of a docstring, quotes excluded."""
     about = prose.paragraph(program.about) or [f"Compute {program.name}."]
     lines = [*about, "", "Args:"]
@@ -118,8 +129,11 @@ def _document(module: Module, program: Program | Routine, statuses: dict[int, st
         lines += _item(f"{result.name}: {result.about}{shape}")
     if program.arguments:
         lines += ["", "Raises:", *_item("ValueError: an argument has a wrong shape.")]
-    for about_ in dict.fromkeys(statuses.values()):
-        lines += _item(f"numpy.linalg.LinAlgError: {about_}")
+    if program.arguments and not smooth:
+        lines += _item("TypeError: an argument is complex.")
+    if statuses:
+        meanings = "; ".join(f"{number_}: {about_}" for number_, about_ in statuses.items())
+        lines += _item(f"StatusError: {meanings}.")
     return _indented(lines, 4)
 
 
@@ -131,11 +145,11 @@ def _item(text: str) -> list[str]:
     return [f"    {line}" for line in prose.paragraph(text, 4)]
 
 
-def _wrapper(module: Module, program: Program | Routine) -> list[str]:
+def _wrapper(module: Module, program: Program | Routine, *, smooth: bool) -> list[str]:
     """The lines of a public function, below its docstring."""
     lines, leads = [], []
     for argument in program.arguments:
-        lead, line = _read(module, argument)
+        lead, line = _read(module, argument, smooth=smooth)
         lines.append(line)
         leads.append(lead)
     results = ", ".join(result.name for result in program.results)
@@ -149,12 +163,13 @@ def _wrapper(module: Module, program: Program | Routine) -> list[str]:
     ]
 
 
-def _read(module: Module, argument: Argument) -> tuple[str, str]:
+def _read(module: Module, argument: Argument, *, smooth: bool) -> tuple[str, str]:
     """The name of an argument's leading shape and the line that finds it and the components."""
     name, lead = argument.name, f"{argument.name}_lead"
     if argument.size is not None:
         size = layout.extent(module, name, argument.size)
-        return lead, f'    {lead}, {name} = _split("{name}", {name}, {size})'
+        kept = ", smooth=True" * smooth
+        return lead, f'    {lead}, {name} = _split("{name}", {name}, {size}{kept})'
     if name == "p":
         return lead, f"    {lead} = _check_parameters(p)"
     return lead, f"    {lead}, {name} = _number({name})"
@@ -174,17 +189,17 @@ def _sizes(program: Program | Routine) -> str:
     return ", ".join(str(math.prod(result.shape)) for result in program.results) + ","
 
 
-def _body(module: Module, program: Program | Routine) -> list[str]:
+def _body(module: Module, program: Program | Routine, notation: Notation) -> list[str]:
     """The lines of a private function: arguments and results are lists of components."""
     if program.handed:
-        return routines.handed(module, program, "python", "_")
+        return routines.handed(module, program, _DIALECT)
     if isinstance(program, Routine):
-        return routines.body(module, program, "python", "_", literal)
+        return routines.body(module, program, _DIALECT)
     lines = []
     for call in program.calls:
         results = ", ".join(result.name for result in call.results)
         lines.append(f"    {results} = _{call.program}({', '.join(call.arguments)})")
-    body = print_program(program, _NOTATION)
+    body = print_program(program, notation)
     lines += body.lines
     for result, entries in zip(program.results, body.results, strict=True):
         lines += [f"    {result.name} = [", *_filled(entries), "    ]"]
@@ -204,20 +219,72 @@ def _filled(entries: Sequence[str]) -> list[str]:
     return [*lines, line] if entries else lines
 
 
-def _check(value: str, bound: str, check: Check) -> list[str]:
-    return [
-        f"    if not _holds({value} > {bound}):",
-        f"        raise np.linalg.LinAlgError({literal(prose.plain(check.about))})",
+def _statuses(module: Module) -> list[tuple[str, int, str]]:
+    """Name, number and meaning of each status, as literals; none where no function reports any."""
+    found = failures.constants(module)
+    if not found:
+        return []
+    rows = [(failures.OK, 0, "the results are returned")]
+    rows += [
+        (failures.name_of(module, name), number_, "; or ".join(about))
+        for (number_, _), (name, about) in found.items()
     ]
+    return [(literal(name), number_, literal(prose.plain(about))) for name, number_, about in rows]
 
 
-_NOTATION = Notation(
-    before="    ",
-    after="",
-    member="p.",
-    functions={name: f"_{name}(" for name in ARITY},
-    comment=lambda label: f"    # -- {prose.plain(label)}",
-    check=_check,
-    divided="_ratio(",
-)
-"""The dashes keep a label from being read as an instruction to a tool, such as ``type: ignore``."""
+def _given(program: Program | Routine) -> str:
+    """The arguments that must be finite: all but the constants of `prepare`."""
+    return ", ".join(x.name for x in program.arguments if x.name != routines.CONSTANTS)
+
+
+_SMOOTH = ("sin", "cos", "tan", "atan", "sinh", "cosh", "tanh", "exp")
+"""Functions that have a derivative at all real numbers: they keep imaginary parts."""
+
+
+def analytic(module: Module) -> set[str]:
+    """The functions whose results have derivatives, so that complex arguments make sense.
+
+    From their arguments they calculate with sums, products, quotients and smooth functions alone, and so do
+    those that they call.
+    """
+    programs = {x.name: x for x in module.programs if isinstance(x, Program)}
+    needs = {
+        name: {*failures.called(x), *([x.handed] if x.handed else [])}
+        for name, x in programs.items()
+        if _is_smooth(x)
+    }
+    while True:
+        found = {name for name, others in needs.items() if others <= needs.keys()}
+        if len(found) == len(needs):
+            return found
+        needs = {name: needs[name] for name in found}
+
+
+def _is_smooth(program: Program) -> bool:
+    """Whether a program applies smooth functions only to what depends on more than parameters and time."""
+    live = live_nodes(program)
+    kinked = [x.index for x in live if x.op in ARITY and x.op not in _SMOOTH]
+    return not kinked or straight.varying(program, live).isdisjoint(kinked)
+
+
+def _notation(module: Module) -> Notation:
+    """How Python writes expressions and checks."""
+    constants = failures.constants(module)
+
+    def check(value: str, bound: str, found: Check) -> list[str]:
+        name = failures.name_of(module, constants[found.status, found.name][0])
+        return [
+            f"    if not _exceeds({value}, {bound}):",
+            f"        raise StatusError({literal(name)})",
+        ]
+
+    return Notation(
+        before="    ",
+        after="",
+        member="p.",
+        functions={name: f"_{name}(" for name in ARITY},
+        # the dashes keep a label from being read as an instruction to a tool, such as ``type: ignore``
+        comment=lambda label: f"    # -- {prose.plain(label)}",
+        check=check,
+        divided="_ratio(",
+    )

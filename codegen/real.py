@@ -30,6 +30,7 @@ _DOUBLE = {
     "closed": "1e-9",
     "nothing": "1e-9",
     "any": "1e300",
+    "large": "1e100",
     "slack": "1e-2",
 }
 _FLOAT = {
@@ -41,6 +42,7 @@ _FLOAT = {
     "closed": "2e-5",
     "nothing": "1e-5",
     "any": "1e30",
+    "large": "1e30",
     "slack": "1e-2",
 }
 TOLERANCES = {"double": _DOUBLE, "float": _FLOAT}
@@ -48,7 +50,8 @@ TOLERANCES = {"double": _DOUBLE, "float": _FLOAT}
 
 rank: entries of a scaled matrix that are zero; pivot: of a mass matrix, beside what it was made of; residual:
 beside the size of its terms; step, still: corrections that change nothing any more; closed: a gap of loops
-(m, rad) that is none; nothing: added where all may be zero; any: more than anything; slack: the part by
+(m, rad) that is none; nothing: added where all may be zero; any: more than anything; large: what is
+taken for infinite in between, so that all languages agree; slack: the part by
 which redundant constraints may contradict each other.
 """
 

@@ -2,38 +2,38 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
-from codegen import prose, stack
+from codegen import declare, prose
 from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL
 from linegraph.program import Program, live_nodes
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
+    from codegen.frames import Definition
     from linegraph.program import Module, Routine
 
 _KINDS = {ADD: 0, SUB: 0, MUL: 1, DIV: 2}
 _HEADINGS = ("+ -", "*", "/", "functions", "variables", "stack", "lines")
 
 
-def table(module: Module, source: str, bytes_of: Mapping[str, int]) -> list[str]:
-    """The lines: one for each function, counted in the program and in the text that was made of it.
+def table(
+    module: Module, functions: Sequence[Definition], bytes_of: Mapping[str, int]
+) -> list[str]:
+    """The lines: one for each function, counted in the program and in what is printed of it.
 
     Args:
         module: whose functions.
-        source: the text of the C file.
+        functions: all that is defined for them, as it is printed.
         bytes_of: the stack of each function.
     """
-    texts = stack.functions(source)
     rows: list[tuple[str, ...]] = [("function", *_HEADINGS)]
     for program in module.programs:
-        name = f"{module.name}_{program.name}"
-        own = [text for part, text in texts.items() if _is_part(part, name)]
-        variables = sum(len(re.findall(r"\bconst \w+ t\d+ = (?!kept\[)", body)) for _, body in own)
-        lines = sum(head.count("\n") + body.count("\n") + 3 for head, body in own)
-        numbers = (variables, bytes_of[name], lines)
+        own = [x for x in functions if _is_part(x.name, program.name)]
+        variables = sum(x.frame.named for x in own)
+        lines = sum(x.head.count("\n") + len(x.lines) + 3 for x in own)
+        numbers = (variables, bytes_of[program.name], lines)
         rows.append((program.name, *_operations(program), *map(str, numbers)))
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     about = (
@@ -54,7 +54,10 @@ def table(module: Module, source: str, bytes_of: Mapping[str, int]) -> list[str]
 
 
 def _is_part(part: str, name: str) -> bool:
-    return part == name or re.fullmatch(rf"{name}_part\d+", part) is not None
+    """Whether a function is one of a program, or does some of its work."""
+    own = part.removesuffix(declare.CORE)
+    stem, _, place = own.rpartition("_part")
+    return name in (own, stem if place.isdigit() else own)
 
 
 def _operations(program: Program | Routine) -> tuple[str, ...]:

@@ -7,10 +7,12 @@ module's other functions.
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from codegen import failures, layout, templates
+from codegen import failures, frames, layout, templates
+from codegen.frames import Frame
 from linegraph.program import PREPARED_SUFFIX, Routine
+from linegraph.statuses import NOT_FINITE_INPUT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -18,21 +20,40 @@ if TYPE_CHECKING:
     from linegraph.program import Module, Program
 
 HELPERS = {
-    "constrained_dynamics": ("eliminate", "constrained"),
-    "project": ("eliminate", "constrained", "unit"),
-    "complete": ("eliminate", "determined", "unit"),
-    "reduction": ("eliminate", "determined"),
+    "constrained_dynamics": ("eliminate", "large", "constrained"),
+    "project": ("eliminate", "large", "norm", "constrained", "unit"),
+    "complete": ("eliminate", "large", "norm", "determined", "unit"),
+    "reduction": ("eliminate", "large", "determined"),
     "reduced_equations": (),
-    "linearization": ("eliminate", "constrained", "determined"),
+    "linearization": ("eliminate", "large", "constrained", "determined"),
     "after_dynamics": (),
     "rhs": (),
-    "newton": ("eliminate", "norm"),
+    "newton": ("eliminate", "norm", "rounding"),
 }
 """The algorithms, and what they share."""
 
 
+CONSTANTS = "c"
+"""The argument that is no input: what `prepare` returned. It may be infinite where a check tells of it."""
+
 BATCHED = ("after_dynamics", "rhs")
 """Algorithms that only call others, so that they take many states at once where those do."""
+
+
+class Dialect(NamedTuple):
+    """How a language has its routines.
+
+    Attributes:
+        folder: of its templates.
+        prefix: of its functions' names.
+        passed: whether results are arguments, which the function writes, and arguments not read are listed.
+        checked: the function that calls those that report no status, where a status is reported.
+    """
+
+    folder: str
+    prefix: str
+    passed: bool
+    checked: str = ""
 
 
 def helpers(module: Module) -> list[str]:
@@ -59,18 +80,16 @@ def _detail(module: Module, name: str) -> tuple[int, ...]:
 def body(
     module: Module,
     routine: Routine,
-    language: str,
-    prefix: str,
-    quote: Callable[[str], str] = str,
+    dialect: Dialect,
     small: Mapping[str, str] | None = None,
 ) -> list[str]:
     """The lines of a routine's body.
 
-    `quote` writes what a status means as a string; `small` are the tolerances of `real.TOLERANCES`.
+    `small` are the tolerances of `real.TOLERANCES`.
     """
     counts = layout.counts(module)
     text = templates.fill(
-        f"{language}/routines/{routine.algorithm}.jinja",
+        f"{dialect.folder}/routines/{routine.algorithm}.jinja",
         counts={"NC": 0, "NP": 0, "NI": 0, **counts},
         results=", ".join(result.name for result in routine.results),
         name=module.name,
@@ -78,46 +97,64 @@ def body(
         ok=f"{module.name.upper()}_{failures.OK}",
         status=_constants(module, routine),
         small=small or {},
-        call=_calling(module, routine, prefix),
-        texts={status: quote(about) for status, about, _ in routine.statuses},
+        call=_calling(module, routine, dialect),
         fails={name for name, found in layout.statuses(module).items() if found},
         **dict(routine.details),
     )
     lines = text.rstrip("\n").split("\n")
-    if language == "c":
+    if dialect.passed:
         names = (argument.name for argument in routine.arguments)
         lines[:0] = [f"    (void){x};" for x in names if not re.search(rf"\b{x}\b", text)]
     return lines
 
 
-def _constants(module: Module, routine: Routine) -> dict[int, str]:
-    """The named constants of a routine's own statuses."""
+def frame(module: Module, routine: Routine) -> Frame:
+    """What a routine keeps on the stack in C."""
+    shared = [x for x in HELPERS[routine.algorithm] if x != "unit" or quaternions(module)]
+    return frames.of_routine(routine, layout.counts(module), shared)
+
+
+def handed_frame(module: Module, program: Program | Routine) -> Frame:
+    """What a function keeps there that hands its work on."""
+    return Frame(
+        doubles=frames.Counts(layout.counts(module))["NK"],
+        parameters=len(program.arguments) + len(program.results),
+        calls={"prepare", program.handed, "parameters_not_finite"},
+    )
+
+
+def _constants(module: Module, routine: Routine) -> dict[str, str]:
+    """The named constants of a routine's own statuses, by name."""
     named = failures.constants(module)
-    return {x.number: named[x.number, x.name][0] for x in routine.statuses}
+    return {x.name: named[x.number, x.name][0] for x in failures.own(routine)}
 
 
-def handed(module: Module, program: Program | Routine, language: str, prefix: str) -> list[str]:
+def handed(module: Module, program: Program | Routine, dialect: Dialect) -> list[str]:
     """The lines of a function that only prepares the constants and calls the one that takes them."""
-    results = [result.name for result in program.results] if language == "c" else []
+    results = [result.name for result in program.results] if dialect.passed else []
     text = templates.fill(
-        f"{language}/handed.jinja",
+        f"{dialect.folder}/handed.jinja",
         macro=module.name.upper(),
-        prefix=prefix,
+        prefix=dialect.prefix,
         function=program.handed,
         others=[a.name for a in program.arguments if a.name != "p"] + results,
-        status=program.status or bool(layout.statuses(module)[program.name]),
+        status=bool(layout.statuses(module)[program.name]),
+        not_finite_input=f"{module.name.upper()}_{NOT_FINITE_INPUT.name}",
     )
     return text.rstrip("\n").split("\n")
 
 
-def _calling(module: Module, routine: Routine, prefix: str) -> Callable[..., str]:
+def _calling(module: Module, routine: Routine, dialect: Dialect) -> Callable[..., str]:
     """How a template calls another function.
 
     ``call("bias", "h", v="v_on")`` gives ``arm_bias(p, q, v_on, h)``.
     The first names are those of the results; arguments have their own names unless renamed. One that takes
-    the constants of `prepare` calls others that do.
+    the constants of `prepare` calls others that do. Those that report no status are called by `checked`, if
+    there is such a function.
     """
     programs = {program.name: program for program in module.programs}
+    prefix = dialect.prefix
+    statuses = layout.statuses(module)
 
     def call(name: str, *results: str, **renamed: str) -> str:
         if name not in routine.uses:
@@ -125,6 +162,8 @@ def _calling(module: Module, routine: Routine, prefix: str) -> Callable[..., str
         if name not in routine.uses:
             raise ValueError(f"{routine.name} does not say that it calls {name}")
         given = [renamed.get(x.name, x.name) for x in programs[name].arguments]
+        if dialect.checked and not statuses[name]:
+            return f"{dialect.checked}({', '.join([prefix + name, *given, *results])})"
         return f"{prefix}{name}({', '.join([*given, *results])})"
 
     return call

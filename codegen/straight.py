@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from codegen import declare, failures, real
 from codegen.angles import Angles
+from codegen.frames import Definition, Frame
 from codegen.order import Entry, Guard, Step, arranged, paired
 from codegen.parts import cut, places
 from codegen.printer import Notation, Printer, number
@@ -26,10 +27,9 @@ if TYPE_CHECKING:
     from linegraph.expression import Operand
     from linegraph.program import Argument, Call, Check, Module, Program
 
-Definition = tuple[str, list[str]]
-"""The head of a function and the lines between its braces."""
+OWN = ("sign", "min", "max")
+"""Functions of the file itself: that of <math.h> is missing, or it hides what is not a number."""
 
-RENAMED = {"abs": "fabs", "min": "fmin", "max": "fmax"}
 SHARED = ("p", "c", "t")
 """Arguments that all states of a batch have in common."""
 
@@ -53,7 +53,9 @@ class Kind:
 
 def function(module: Module, name: str) -> str:
     """What C calls a function of `ARITY`: that of <math.h>, or the file's own, after the module."""
-    return f"{module.name}_sign_of" if name == "sign" else RENAMED.get(name, name)
+    if name in OWN:
+        return f"{module.name}_{name}_of"
+    return "fabs" if name == "abs" else name
 
 
 def define(
@@ -73,7 +75,7 @@ class _Writer:
         self.prefix, self.macro = module.name, module.name.upper()
         self.ok = f"{self.macro}_{failures.OK}"
         live = live_nodes(program)
-        self.wide = _wide(program, live) if kind.wide else frozenset()
+        self.wide = varying(program, live) if kind.wide else frozenset()
         special = kind.wide or kind.inline
         forced = filter(self.apart, live) if special else paired(live)
         items = arranged(program, forced)
@@ -83,6 +85,8 @@ class _Writer:
         self.angles, self.items = angles, angles.without(items)
         self.notation = _notation(module, kind)
         self.printer = Printer(program, self.notation)
+        self.own = {f"{node.op}_of" for node in live if node.op in OWN}
+        self.frame = self.begun()
         self.count = 0
         self.zero = False
         self.read: set[str] = set()
@@ -97,11 +101,14 @@ class _Writer:
         """The type of a node with a name."""
         return self.kind.number if not self.kind.wide or index in self.wide else "double"
 
+    def begun(self) -> Frame:
+        """The record of a function."""
+        return Frame(statements=0, wide=self.kind.wide, calls=set(self.own))
+
     def definitions(self) -> list[Definition]:
         """All functions, the public one last."""
-        program, kind = self.program, self.kind
+        program, kind, made = self.program, self.kind, list[Definition]()
         parts = cut(self.items)
-        made: list[Definition] = []
         if len(parts) == 1:
             self.read = self.printer.begin()
             main = self.lines(parts[0], {})
@@ -113,25 +120,36 @@ class _Writer:
             for call in program.calls
             for local in call.results
         ]
+        for call in program.calls:
+            self.frame.add(kind.number, sum(local.size or 1 for local in call.results))
+            self.frame.calls.add(call.program)
         guarded = len(parts) > 1 and bool(program.checks)
         if any(fails) or guarded:
             lines.append("    int status;")
+            self.frame.ints += 1
         lines += [f"    (void){x.name};" for x in program.arguments if x.name not in self.used()]
         lines += [f"    (void){x.name};" for x in program.results if not x.entries]
-        returning = {x.name for x in self.module.programs if x.status}
         for call, may_fail in zip(program.calls, fails, strict=True):
-            ignored = "(void)" if call.program in returning and not may_fail else ""
-            text = f"{ignored}{self.prefix}_{call.program}({_given(call)});"
+            text = f"{self.prefix}_{call.program}({_given(call)});"
             lines += _called(text, may_fail, self.ok)
         lines += self.sines() + main
-        if program.status or self.statuses[program.name]:
+        if self.statuses[program.name]:
             lines.append(f"    return {self.ok};")
-        return [*made, (self.signature(), lines)]
+        self.frame.parameters = len(program.arguments) + len(program.results)
+        self.frame.statements = len(lines)
+        return [*made, Definition(self.name(), self.signature(), lines, self.frame)]
+
+    def name(self) -> str:
+        """What the function itself is called, after the module."""
+        if self.kind.wide:
+            return f"{self.program.name}_lanes"
+        return self.program.name + declare.CORE * bool(self.statuses[self.program.name])
 
     def signature(self) -> str:
         """The head of the function itself."""
         if not self.kind.wide:
-            return declare.signature(self.module, self.program, self.statuses)
+            core = bool(self.statuses[self.program.name])
+            return declare.signature(self.module, self.program, self.statuses, core=core)
         parts = [self.argument(x) for x in self.program.arguments]
         parts += [declare.result(self.module, x, self.kind.number) for x in self.program.results]
         return declare.head(f"static void {self.prefix}_{self.program.name}_lanes(", parts)
@@ -143,24 +161,26 @@ class _Writer:
 
     def used(self) -> set[str]:
         """The names of the arguments and local arrays that are read."""
-        given = (call.arguments for call in self.program.calls)
-        return self.read.union(self.angles.reads, *given)
+        return self.read.union(self.angles.reads, *(x.arguments for x in self.program.calls))
 
     def sines(self) -> list[str]:
         """Sines and cosines of all angles that are known from the start, side by side."""
         angles, number = self.angles, self.kind.number
         if not angles.size:
             return []
+        self.frame.add(number, 2 * angles.size)
         arrays = f"sines[{angles.size}], cosines[{angles.size}]"
         if not angles.early:
             return [f"    {number} {arrays};"]
         texts = [Printer(self.program, self.notation).text(angle) for angle in angles.early]
         texts += ["0.0"] * (angles.filled - len(texts))
-        function = f"{self.prefix}_{'lanes' if self.kind.wide else 'all'}_sincos"
+        function = f"{'lanes' if self.kind.wide else 'all'}_sincos"
+        self.frame.add(number, len(texts))
+        self.frame.calls.add(function)
         return [
             f"    const {number} angles[{len(texts)}] = {{{', '.join(texts)}}};",
             f"    {number} {arrays};",
-            f"    {function}({len(angles.early)}, angles, sines, cosines);",
+            f"    {self.prefix}_{function}({len(angles.early)}, angles, sines, cosines);",
         ]
 
     # ---- parts
@@ -172,22 +192,26 @@ class _Writer:
             number: "kept" if number == self.kind.number else "common" for number in found.count
         }
         of = {x: f"{arrays[self.type_of(x)]}[{place}]" for x, place in found.of.items()}
-        lines = [
-            f"    {number} {arrays[number]}[{count}];" for number, count in found.count.items()
-        ]
-        made: list[Definition] = []
+        lines: list[str] = []
+        for type_, count in found.count.items():
+            lines.append(f"    {type_} {arrays[type_]}[{count}];")
+            self.frame.add(type_, count)
+        main, made = self.frame, list[Definition]()
         for place, part in enumerate(parts, 1):
             read = self.printer.begin()
+            self.frame = self.begun()
             body = self.lines(part, of)
             self.read |= read
             names, declared = self.parameters(part, read, of, found.count, arrays)
             fails = any(isinstance(item, Guard) for item in part.items)
-            name = f"{self.prefix}_{self.program.name}{'_lanes' * self.kind.wide}_part{place}"
-            start = f"{self.macro}_PART {'int' if fails else 'void'} {name}("
-            made.append(
-                (declare.head(start, declared), [*body, *[f"    return {self.ok};"] * fails])
-            )
-            lines += _called(f"{name}({', '.join(names)});", fails, self.ok)
+            name = f"{self.program.name}{'_lanes' * self.kind.wide}_part{place}"
+            start = f"{self.macro}_PART {'int' if fails else 'void'} {self.prefix}_{name}("
+            body += [f"    return {self.ok};"] * fails
+            self.frame.parameters, self.frame.statements = len(names), len(body)
+            made.append(Definition(name, declare.head(start, declared), body, self.frame))
+            lines += _called(f"{self.prefix}_{name}({', '.join(names)});", fails, self.ok)
+            main.calls.add(name)
+        self.frame = main
         return lines, made
 
     def parameters(
@@ -241,15 +265,18 @@ class _Writer:
                 if index in missing:
                     missing.remove(index)
                     lines.append(f"    const {self.type_of(index)} {known[index]} = {of[index]};")
+                    self.frame.add(self.type_of(index))
             if isinstance(item, Step):
                 name = f"t{self.count}"
                 self.count += 1
+                self.frame.name(self.type_of(item.node.index))
                 lines += self.assignment(item.node, name)
                 known[item.node.index] = name
                 if item.node.index in part.kept:
                     lines.append(f"    {of[item.node.index]} = {name};")
             else:
                 lines += self.ending(item)
+        self.frame.add(self.kind.number, int(self.zero))
         return [f"    const {self.kind.number} zero = {{0.0}};"] * self.zero + lines
 
     def ending(self, item: Item) -> list[str]:
@@ -279,8 +306,10 @@ class _Writer:
         """Sine and cosine of an angle that is known only here."""
         angle = self.printer.text(node.a)
         at = f"&sines[{place}], &cosines[{place}]"
+        self.frame.calls.add("lanes_sincos" if self.kind.wide else "sincos")
         if not self.kind.wide:
             return [f"    {self.prefix}_sincos({angle}, {at});"]
+        self.frame.add(self.kind.number)
         return [
             "    {",
             f"        const {self.kind.number} angle = {angle};",
@@ -290,6 +319,8 @@ class _Writer:
 
     def lanewise(self, node: Node, name: str) -> list[str]:
         """A function of each number in a register."""
+        self.frame.calls.add(f"lanes_{node.op}")
+        self.frame.add(self.kind.number, ARITY[node.op] - 1)
         function = f"{self.prefix}_lanes_{node.op}"
         lines = [f"    {self.kind.number} {name} = {self.spread(node.a)};"]
         if ARITY[node.op] == 1:
@@ -315,7 +346,7 @@ class _Writer:
         return f"{text} + zero"
 
 
-def _wide(program: Program, live: Iterable[Node]) -> frozenset[int]:
+def varying(program: Program, live: Iterable[Node]) -> frozenset[int]:
     """The nodes that differ from state to state."""
     found: set[int] = set()
     for node in live:

@@ -21,6 +21,10 @@ COMMON_NAMES = ("gnd", "0", "earth", "reference", "vss", "world", "base", "datum
 MASS_CENTER = "mass_center"
 
 SMALLEST = 1e-150
+PHYSICAL = 1e-6
+"""Relative to the largest principal moment: files carry about seven digits."""
+ROUNDING = 1e-12
+"""How far the entries of a computed tensor may be from symmetric, relative to the largest."""
 _AXES = ("xx", "xy", "xz", "yy", "yz", "zz")
 
 
@@ -89,17 +93,31 @@ def inertia_of(given: Any, who: str) -> Inertia:
         raise ModelError(who, "inertia must be (xx, yy, zz), a 3 x 3 matrix or named entries")
     for row in rows:
         finite(row, who)
-    if any(not _alike(rows[i][j], rows[j][i], rows) for i in range(3) for j in range(i)):
+    found = symmetric(rows)
+    if found is None:
         raise ModelError(who, "the inertia matrix is not symmetric")
-    return (rows[0][0], rows[0][1], rows[0][2], rows[1][1], rows[1][2], rows[2][2])
+    return found
 
 
-def _alike(a: Any, b: Any, rows: list[list[Any]]) -> bool:
-    """Equal, for numbers up to the rounding of a computed tensor."""
-    if is_number(a) and is_number(b):
-        largest = max((abs(x) for row in rows for x in row if is_number(x)), default=0)
-        return bool(abs(a - b) <= 1e-12 * largest)
-    return bool(a == b)
+def symmetric(rows: Sequence[Sequence[Any]]) -> Inertia | None:
+    """The entries (xx, xy, xz, yy, yz, zz) of a matrix; None where it is not symmetric.
+
+    Numbers that differ by the rounding of a computed tensor are replaced by their mean.
+
+    Example:
+        >>> symmetric([[2.0, 0.1, 0], [0.1 + 1e-17, 2.0, 0], [0, 0, 3.0]])
+        (2.0, 0.1, 0, 2.0, 0, 3.0)
+    """
+    largest = max((abs(x) for row in rows for x in row if is_number(x)), default=0)
+    found = []
+    for i in range(3):
+        for j in range(i, 3):
+            a, b = rows[i][j], rows[j][i]
+            near = is_number(a) and is_number(b) and abs(a - b) <= ROUNDING * largest
+            if not near and a != b:
+                return None
+            found.append((a + b) / 2 if near and a != b else a)
+    return tuple(found)
 
 
 def orientation(who: str, rpy: Vector | None, axis: Vector | None, angle: float) -> Matrix:
@@ -137,3 +155,50 @@ def _length(axis: Sequence[Any]) -> Any:
     import sympy
 
     return sympy.sqrt(sum(sympy.sympify(c, strict=True) ** 2 for c in axis))
+
+
+def impossible(tensor: Inertia) -> str:
+    """Why no distribution of mass has this inertia tensor; empty where one has.
+
+    Principal moments are never negative, and none exceeds the sum of the other two.
+
+    Example:
+        >>> impossible((1.0, 0, 0, 1.0, 0, 3.0))
+        'principal moments 1, 1, 3 kg m^2: the largest exceeds the sum of the others'
+    """
+    low, middle, high = principal_moments(tensor)
+    largest = max(abs(low), abs(high))
+    margin = PHYSICAL * largest
+    # moments that are zero up to rounding are shown as zero
+    shown = (0.0 if abs(moment) < 1e-12 * largest else moment for moment in (low, middle, high))
+    said = f"principal moments {', '.join(f'{moment:.6g}' for moment in shown)} kg m^2"
+    if low < -margin:
+        return f"{said}: none can be negative"
+    if high > low + middle + margin:
+        return f"{said}: the largest exceeds the sum of the others"
+    return ""
+
+
+def about_one_axis(tensor: Inertia) -> bool:
+    """Whether there is inertia about one axis and none about those across it."""
+    low, middle, high = principal_moments(tensor)
+    return high > 0 and max(abs(low), abs(middle)) <= PHYSICAL * high
+
+
+def principal_moments(tensor: Inertia) -> tuple[float, float, float]:
+    """The eigenvalues of a symmetric tensor, rising: roots of its cubic by the cosine formula."""
+    scale = max(abs(entry) for entry in tensor)
+    if scale == 0:
+        return (0.0, 0.0, 0.0)
+    xx, xy, xz, yy, yz, zz = (entry / scale for entry in tensor)
+    mean = (xx + yy + zz) / 3
+    a, b, c = xx - mean, yy - mean, zz - mean
+    spread = math.sqrt((a * a + b * b + c * c + 2 * (xy * xy + xz * xz + yz * yz)) / 6)
+    if spread == 0:
+        return (mean * scale,) * 3
+    determinant = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz)
+    cosine = max(-1.0, min(1.0, determinant / (2 * spread**3)))
+    angle = math.acos(cosine) / 3
+    high = mean + 2 * spread * math.cos(angle)
+    low = mean + 2 * spread * math.cos(angle + 2 * math.pi / 3)
+    return (low * scale, (3 * mean - high - low) * scale, high * scale)

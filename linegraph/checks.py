@@ -6,15 +6,45 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from linegraph.errors import ModelError
+from linegraph.formula import CONSTANTS
+from linegraph.functions import ARITY
 from linegraph.parameters import is_number
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Container, Iterable
 
     from linegraph.vector import Matrix, Vector
 
 ORTHOGONAL = 1e-6
 """How far the axes of a frame may be from orthogonal unit vectors: matrices typed with six digits pass."""
+
+RESERVED = frozenset({"t", "der", "input", *CONSTANTS, *ARITY})
+"""Names with a meaning of their own in expressions: nothing else may have them."""
+
+
+def require_new(
+    name: str, known: Container[str], who: str, problem: str = "is declared twice"
+) -> None:
+    """Refuse a name that is taken, or that means something else in expressions.
+
+    Args:
+        name: what something is to be called.
+        known: the names of all that it shares names with.
+        who: how errors call it.
+        problem: what to tell where the name is known.
+
+    Raises:
+        ModelError: the name is known or reserved.
+    """
+    if name in known:
+        raise ModelError(who, problem)
+    if name in RESERVED:
+        raise ModelError(who, reserved_problem(name))
+
+
+def reserved_problem(name: str) -> str:
+    """What to tell whoever gave a reserved name."""
+    return f'"{name}" has a meaning of its own in expressions; choose another name'
 
 
 def plain(x: Any) -> Any:

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import click
 
+import codegen
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     Command = Callable[..., None]
     Option = Callable[[Command], Command]
-
-LANGUAGES = ("c", "python")
 
 FURTHER = (
     "linearize",
@@ -157,14 +157,14 @@ EMIT: tuple[Option, ...] = (
     click.option(
         "--lang",
         "languages",
-        type=click.Choice(LANGUAGES),
+        type=click.Choice(codegen.LANGUAGES),
         multiple=True,
         help="Language to write; repeatable.  [default: all; with --arduino C alone]",
     ),
     click.option(
         "--trig",
-        type=click.Choice(["libm", "inline"]),
-        default="libm",
+        type=click.Choice(codegen.TRIG),
+        default=codegen.TRIG[0],
         show_default=True,
         help="Sines and cosines in C: of <math.h>, or of the file itself, within 2 units in the last "
         "place and for all joints at once.",
@@ -183,8 +183,8 @@ EMIT: tuple[Option, ...] = (
     ),
     click.option(
         "--real",
-        type=click.Choice(["double", "float"]),
-        default="double",
+        type=click.Choice(codegen.REAL),
+        default=codegen.REAL[0],
         show_default=True,
         help="The type of C's numbers; with float nothing is computed in doubles.",
     ),

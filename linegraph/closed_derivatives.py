@@ -20,17 +20,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from linegraph import tangent
-from linegraph.closed_programs import (
-    CONTRADICTION,
-    NO_INERTIA,
-    SINGULAR,
-    assembly,
-    independent,
-    routine,
-)
+from linegraph.closed_programs import assembly, independent, routine
 from linegraph.errors import ModelError
 from linegraph.program import Program, Result, Routine
 from linegraph.slopes import columns, matrix, of_motion, turned, variables
+from linegraph.statuses import CONTRADICTION, NOT_DETERMINED, SINGULAR_INERTIA, SINGULAR_POSITION
 
 if TYPE_CHECKING:
     from linegraph.shared import Functions
@@ -62,7 +56,7 @@ def linearize(f: Functions) -> tuple[Program | Routine, ...]:
     )
     calls = ("forward_dynamics", "constrained_equations", "constrained_slopes", "reduction")
     given = ("q", "v", "u")
-    statuses = (SINGULAR, NO_INERTIA, CONTRADICTION)
+    statuses = (SINGULAR_POSITION, SINGULAR_INERTIA, CONTRADICTION, NOT_DETERMINED)
     made = routine(f, "linearize", about, given, tuple(results), "linearization", statuses, calls)
     return (_slopes(f), replace(made, details=(*made.details, ("d_at", tuple(free)))))
 

@@ -8,27 +8,23 @@ from linegraph import network_programs
 from linegraph.errors import ModelError
 from linegraph.layout import has_plain_rates
 from linegraph.parameters import resolver
-from linegraph.program import Argument, Listing, Program, Quantity, Result, Routine, Status, reads
+from linegraph.program import Argument, Listing, Program, Quantity, Result, Routine, reads
+from linegraph.statuses import (
+    CONTRADICTION,
+    NO_VELOCITY,
+    NOT_CLOSED,
+    NOT_DETERMINED,
+    SINGULAR_INERTIA,
+    SINGULAR_POSITION,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from linegraph.assembly import Assembly
+    from linegraph.program import Status
     from linegraph.shared import Functions
     from linegraph.vector import Scalar
-
-SINGULAR = Status(
-    1, "the position is singular: more motions are free here than elsewhere", "SINGULAR_POSITION"
-)
-NO_INERTIA = Status(
-    2, "the mass matrix is singular on the motions that the constraints allow", "SINGULAR_INERTIA"
-)
-CONTRADICTION = Status(3, "the constraints contradict each other", "CONTRADICTION")
-NOT_CLOSED = Status(1, "no position that satisfies the constraints was found", "NOT_CLOSED")
-SLIPPING = Status(2, "the constraints of velocity contradict each other", "NO_VELOCITY")
-NOT_DETERMINED = Status(
-    2, "the independent coordinates do not determine the others here", "NOT_DETERMINED"
-)
 
 
 def constraints(f: Functions) -> tuple[Program | Routine, ...]:
@@ -97,7 +93,7 @@ def forward_dynamics(f: Functions) -> tuple[Routine, ...]:
         "Forward dynamics with constraints: M a + h = Q(u) + J^T lam, J a = gam."
         f"{_baumgarte_text(f)}"
     )
-    statuses = (SINGULAR, NO_INERTIA, CONTRADICTION)
+    statuses = (SINGULAR_POSITION, SINGULAR_INERTIA, CONTRADICTION)
     return (
         routine(
             f,
@@ -133,7 +129,7 @@ def project(f: Functions) -> tuple[Program | Routine, ...]:
             ("q", "v"),
             results,
             "project",
-            (NOT_CLOSED, SLIPPING),
+            (NOT_CLOSED, NO_VELOCITY),
             (*calls, "coordinate_rates"),
         ),
     )

@@ -19,11 +19,11 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.algebra import set_label
 from linegraph.constraints.base import Constraint, Instant, Pose, Prescribed, Row
+from linegraph.errors import ModelError
 from linegraph.frames import Frame, Pair, along_velocities, frames, relative_motion, seated, seen
 from linegraph.jets import Jet, Jets, lifted
-from linegraph.joints.base import (
-    TORQUES,
-)
+from linegraph.joints import Free
+from linegraph.joints.base import TORQUES
 from linegraph.parameters import resolver
 from linegraph.program import Quantity
 from linegraph.rows import rows_of, where
@@ -204,6 +204,26 @@ class Chords:
         duals = _duals(self._algebra, joint, tail, head)
         rates = tuple(dot(m, w) + dot(f, u) for m, f in duals)
         return joint.measured(self._algebra, *seen(tail, head)), rates
+
+    def named(self, closure: Closure) -> dict[str, Scalar]:
+        """What laws may name of a joint that is a chord: its coordinates x and their rates ``der(x)``.
+
+        Of a quaternion there is no formula; the position beside it is the displacement of the ends.
+        """
+        joint: Any = closure.component
+        tail, head = self.ends(joint.name)
+        try:
+            at, rates = self.coordinates(closure)
+            changes = joint.rates(self._algebra, at, rates)
+        except ModelError:
+            if not isinstance(joint, Free):
+                return {}
+            _, at = seen(tail, head)
+            u, _ = relative_motion(tail, head)
+            changes = times(transpose(tail.rotation), u)
+        names = [quantity.name for quantity in joint.positions()[: len(at)]]
+        found = dict(zip(names, at, strict=True))
+        return found | {f"der({x})": dx for x, dx in zip(names, changes, strict=True)}
 
     @cached_property
     def _equations(self) -> list[Equation]:

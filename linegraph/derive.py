@@ -10,7 +10,7 @@ Each arrow is one pure function.
 from __future__ import annotations
 
 import random
-from copy import copy
+from copy import copy, deepcopy
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -25,8 +25,10 @@ from linegraph.factorization import singular
 from linegraph.formulation import Formulation, formulate
 from linegraph.numeric import Numeric
 from linegraph.parameters import Parameter, valued
+from linegraph.register import declared, require_distinct, require_own
 from linegraph.regularity import Idle, massless, refusal, require_motion, sample_tree
 from linegraph.scope import require_linear
+from linegraph.symbol_names import symbol_names
 from linegraph.transfer import transfer
 from linegraph.united import network_entries
 from linegraph.walk import kinematic_tree
@@ -46,7 +48,7 @@ class Derivation(Face):
     """A model with its graph, its topology and the equations that follow.
 
     Attributes:
-        model: what was said.
+        model: what was said, as it was then.
         graph: the united terminal graph.
         formulation: the chosen trees.
     """
@@ -76,6 +78,11 @@ class Derivation(Face):
         dag = Dag()
         parameters = self.model.parameters.values()
         return self.tree(dag, valued(parameters, dag, lambda p: dag.symbol("p", p.name)))
+
+    @cached_property
+    def symbol_names(self) -> dict[str, tuple[str, ...]]:
+        """What the symbols of closed forms are called, by argument; see `symbol_names`."""
+        return symbol_names(self)
 
     def numeric(
         self,
@@ -250,6 +257,8 @@ class Derivation(Face):
 def derive(model: Model) -> Derivation:
     """Unite the terminal graphs, choose the tree, check that equations of motion exist.
 
+    The derivation is a snapshot: it keeps a copy of the model, which later changes do not reach.
+
     Raises:
         ModelError: the model cannot be derived; the message names the component.
 
@@ -261,11 +270,15 @@ def derive(model: Model) -> Derivation:
         >>> derive(model).numeric().mass_matrix([0.3])
         [[0.5]]
     """
+    model = deepcopy(model)
     try:
         graph = model.graph()
+        owners = require_distinct(declared(model), model.places)
+        require_own(model, owners, model.places)
         formulation = formulate(model, graph)
         derivation = Derivation(model, graph, formulation)
         require_motion(model, derivation.structure)
+        _ = derivation.symbol_names
         if derivation.structure.closed and derivation.valued:
             derivation.require_relations()
         _ = derivation.idle

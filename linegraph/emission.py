@@ -114,18 +114,19 @@ def render(
 
     tell = progress or (lambda text: None)
     choices = codegen.options_of(options)
-    default = ("c",) if choices.arduino else codegen.LANGUAGES
+    asked = {name for name, x in options.items() if x != getattr(codegen.Options(), name)}
+    heeding = [x for x in codegen.LANGUAGES if asked & codegen.known(x).options]
+    default = heeding if choices.arduino else codegen.LANGUAGES
     chosen = list(dict.fromkeys(_several(languages or default)))
     frames, functions, only = _several(frames), _several(functions), _several(only)
     for language in chosen:
         if language not in codegen.LANGUAGES:
             known = ", ".join(codegen.LANGUAGES)
             raise ModelError(f'language "{language}"', f"is not known; known: {known}")
-    if "c" not in chosen and choices != codegen.Options():
-        given = ", ".join(
-            name for name, x in options.items() if x not in (None, False, "libm", "double")
-        )
-        raise ModelError(f"options of C ({given})", "C is not written: add it to the languages")
+    if asked and not set(heeding) & set(chosen):
+        whose, given = " or ".join(map(str.capitalize, heeding)), ", ".join(sorted(asked))
+        problem = f"{whose} is not written: add it to the languages"
+        raise ModelError(f"options of {whose} ({given})", problem)
     prefix = codegen.naming.identifier(model.name) if name is None else name
     tell("deriving")
     module = module_for(model, prefix, folded=folded, functions=functions, only=only, frames=frames)
@@ -139,7 +140,10 @@ def render(
         tell("computing golden vectors")
         found = _vectors(model, module, named_frames(model, frames))
         for language in chosen:
-            files |= codegen.render_tests(module, found, language, choices)
+            checks = codegen.render_tests(module, found, language, choices)
+            if not checks:
+                tell(f"{language} has no golden vectors")
+            files |= checks
     return files
 
 

@@ -17,7 +17,6 @@ from linegraph.program import PREPARED_SUFFIX, Module, Result, reads
 from linegraph.programs import OF_FRAMES, PROGRAMS, module_of, parameters_of
 from linegraph.prologue import PREPARE
 from linegraph.shared import Functions
-from linegraph.symbol_names import symbol_names
 from linegraph.sympy_walk import evaluate
 
 if TYPE_CHECKING:
@@ -124,7 +123,7 @@ def _of_expression(derivation: Derivation, name: str, what: Any) -> Function:
     dag, tree = functions.dag, functions.tree
     symbols = {
         symbol: dag.symbol(argument, k)
-        for argument, names in symbol_names(derivation).items()
+        for argument, names in derivation.symbol_names.items()
         for k, symbol in enumerate(names)
     }
     symbols |= {**functions.values, "t": dag.symbol("t")}

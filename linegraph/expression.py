@@ -14,9 +14,12 @@ nothing. Numbering follows the order of construction, so equal input gives equal
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from linegraph.functions import of_numbers
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 Number: TypeAlias = int | float | Fraction
 
@@ -110,6 +113,12 @@ class Dag:
     def symbol(self, argument: str, place: int | str | None = None) -> Node:
         """The input at `place` of `argument`; asking again gives the same node."""
         return self._node(SYMBOL, argument, place)
+
+    def copied(self, node: Node, known: Mapping[int, Operand]) -> Operand:
+        """An operation of another DAG, on operands that are copies, too; `known` has these by index."""
+        a, b = node.a, node.b
+        a = known[a.index] if isinstance(a, Node) else a
+        return self._node(node.op, a, known[b.index] if isinstance(b, Node) else b)
 
     def sin(self, x: Operand) -> Operand:
         """Sine of an angle in radians."""

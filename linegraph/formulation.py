@@ -30,7 +30,7 @@ from linegraph.elements import Element
 from linegraph.errors import ModelError
 from linegraph.graph import Projection
 from linegraph.joints import Compound
-from linegraph.planarity import Angle, absolute_angles
+from linegraph.planarity import Angle, absolute_angles, related
 from linegraph.topology import Topology, choose_forest
 
 if TYPE_CHECKING:
@@ -128,6 +128,7 @@ def _absolute(model: Model) -> tuple[str, ...]:
     Where all bodies are to be absolute, those at the head of a joint that has to be a branch are not.
     """
     held = {*_coupled(model), *(j.name for j in model.joints if isinstance(j, Compound))}
+    held |= related(model)
     terminals = model.terminals()
     ends = (joint.between[::-1] for joint in model.joints if joint.name in held)
     bodies = [[terminals[end][0] for end in pair if end in terminals] for pair in ends]

@@ -19,7 +19,7 @@ from linegraph.formula import Formula
 from linegraph.joints import Joint, Moments
 from linegraph.joints.base import Restriction, point_apart, second_moments
 from linegraph.parameters import Parameter
-from linegraph.rotation import Diagonal, Rotation, product, rotation_of, snapped
+from linegraph.rotation import Diagonal, Inertia, Rotation, product, rotation_of, snapped
 from linegraph.vector import ZERO, Matrix, Scalar, Vector
 
 if TYPE_CHECKING:
@@ -337,6 +337,20 @@ def mass_center(body: Body, resolve: Resolve) -> Vector:
         mass = resolve(Formula("max", (named, least)))
     first = resolved(body.first, resolve)
     return ZERO if mass == 0 else (first[0] / mass, first[1] / mass, first[2] / mass)
+
+
+def central_inertia(body: Body, resolve: Resolve) -> Inertia:
+    """A body's inertia tensor about its mass centre, in its own axes."""
+    given = tuple(resolve(x) for x in body.inertia)
+    if body.first is None:
+        return given
+    mass = resolve(body.mass)
+    x, y, z = mass_center(body, resolve)
+    shift = (
+        *(y * y + z * z, -x * y, -x * z),
+        *(x * x + z * z, -y * z, x * x + y * y),
+    )
+    return tuple(a - mass * b for a, b in zip(given, shift, strict=True))
 
 
 def compose(outer: Placement, inner: Placement, snap: float) -> Placement:

@@ -10,11 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from linegraph.absolute import floating, stems_of, turning
 from linegraph.algebra import Floats, set_label
-from linegraph.body import GROUND, MASS_CENTER
 from linegraph.errors import ModelError
 from linegraph.jets import Jet, Jets, lifted
-from linegraph.joints import Free, Spherical
 from linegraph.joints.base import BY_INPUT
 from linegraph.parameters import Input, resolver
 from linegraph.program import Quantity
@@ -76,9 +75,12 @@ class Layout:
     Attributes:
         efforts: (velocity, input) of each effort that acts along a velocity alone.
         pushes: the first input of each joint whose effort does not: chords, and joints measured from ground.
-        places: by joint, and by body for those on their inertia edge.
+        places: by joint, and by stem for bodies on their inertia edge.
+        stems: what the coordinates of a body as a whole begin with, where there are any: the body's name,
+            unless that would give one of them the name of something else.
         drives: prescribed motions by joint or constraint, also of chords.
         input_rates: named inputs and those of their derivatives that a network needs: u, du and ddu.
+        slopes: for each input whose derivative is an input too, that one.
         mechanical: how many of the velocities are of mechanics; states of networks follow.
     """
 
@@ -91,6 +93,8 @@ class Layout:
     drives: dict[str, tuple[Jet | None, ...]] = field(default_factory=dict)
     named_inputs: dict[str, Scalar] = field(default_factory=dict)
     input_rates: dict[tuple[str, str], Scalar] = field(default_factory=dict)
+    slopes: dict[int, int] = field(default_factory=dict)
+    stems: dict[str, str] = field(default_factory=dict)
     mechanical: int = 0
 
     def own(self, joint: str) -> Place | None:
@@ -107,21 +111,20 @@ def layout_of(
     Raises:
         ModelError: a coupling or a prescribed motion is impossible.
     """
-    layout = Layout()
+    layout = Layout(stems=stems_of(model, formulation))
     followers = {coupling.joint: coupling for coupling in model.couplings}
     for joint in model.joints:
         if joint.drive is None and joint.name not in followers:
             _add_effort(layout, joint, _add_coordinates(layout, joint, formulation))
     for body in formulation.absolute:
-        layout.places[body] = _placed(layout, floating(body))
+        stem = layout.stems[body]
+        layout.places[stem] = _placed(layout, floating(body, stem))
     layout.mechanical = len(layout.velocities)
     if formulation.network is not None:
         _add_states(layout, formulation.network)
-    for declared in model.inputs:
-        layout.named_inputs[declared.name] = _input(layout, algebra, _quantity(declared))
-        _add_rates(layout, model, algebra, declared, formulation)
-    for quantities in (layout.positions, layout.velocities):
-        _require_unique(quantities)
+    for given in model.inputs:
+        layout.named_inputs[given.name] = _input(layout, algebra, _quantity(given))
+        _add_rates(layout, model, algebra, given, formulation)
     values = _time(model, algebra, parameters)
     for joint in model.joints:
         if joint.drive is not None:
@@ -139,15 +142,7 @@ def layout_of(
 
 def _add_states(layout: Layout, network: Network) -> None:
     """New velocities for the states of networks."""
-    taken = {quantity.name for quantity in (*layout.positions, *layout.velocities)}
-    for state in network.states:
-        name = state.quantity.name
-        if name in taken:
-            owner = network.owner(state)
-            problem = f'its state "{name}" has the name of another coordinate or state; rename one'
-            raise ModelError(f'{owner.kind} "{owner.name}"', problem)
-        taken.add(name)
-        layout.velocities.append(state.quantity)
+    layout.velocities += [state.quantity for state in network.states]
 
 
 def _add_rates(
@@ -156,6 +151,7 @@ def _add_rates(
     """New inputs for the derivatives of a named one, as far as a network needs them."""
     name, unit = declared.name, declared.unit or "1"
     layout.input_rates[("u", name)] = layout.named_inputs[name]
+    at = len(layout.inputs) - 1
     order = formulation.network.rates.get(name, 0) if formulation.network else 0
     rate = Quantity(f"{name}_rate", f"{unit}/s", f"first derivative of {name}")
     second = Quantity(f"{name}_acceleration", f"{unit}/s^2", f"second derivative of {name}")
@@ -164,26 +160,8 @@ def _add_rates(
             problem = f"the derivative of {name} is needed under this name; rename the input"
             raise ModelError(f'input "{quantity.name}"', problem)
         layout.input_rates[(kind, name)] = _input(layout, algebra, quantity)
-
-
-def floating(body: str) -> Free:
-    """The joint that a body's inertia edge is when it is a branch: all six freedoms against ground."""
-    return Free(body, (GROUND, f"{body}.{MASS_CENTER}"))
-
-
-def turning(joint: str, body: str) -> Spherical:
-    """The joint that an inertia edge is in rotation: the body's orientation against ground."""
-    return Spherical(body, (joint, body), effort=False)
-
-
-def _require_unique(quantities: list[Quantity]) -> None:
-    """Refuse two coordinates of one name: readers and inputs could not tell them apart."""
-    seen: set[str] = set()
-    for quantity in quantities:
-        if quantity.name in seen:
-            problem = "two coordinates have this name; rename a joint"
-            raise ModelError(f'coordinate "{quantity.name}"', problem)
-        seen.add(quantity.name)
+    if order:
+        layout.slopes[at] = at + 1
 
 
 def _add_coordinates(layout: Layout, joint: Joint, formulation: Formulation) -> bool:
@@ -194,7 +172,11 @@ def _add_coordinates(layout: Layout, joint: Joint, formulation: Formulation) -> 
     if angle is None:
         layout.places[joint.name] = _placed(layout, joint)
         return True
-    own = joint if angle.less is not None else turning(joint.name, angle.body)
+    own = (
+        joint
+        if angle.less is not None
+        else turning(joint.name, angle.body, layout.stems[angle.body])
+    )
     layout.places[joint.name] = _placed(layout, own)
     if angle.less is not None:
         about = f"of {angle.body} against ground, about the axis of {joint.name}"
@@ -328,6 +310,7 @@ def has_plain_rates(joint: Joint) -> bool:
 def _from_inputs(layout: Layout, algebra: Algebra, quantity: Quantity) -> Jet:
     """Three inputs: a coordinate, its rate and its acceleration."""
     name, unit = quantity.name, quantity.unit
+    layout.slopes[len(layout.inputs)] = len(layout.inputs) + 1
     return Jet(
         _input(layout, algebra, Quantity(name, unit, f"prescribed: {quantity.about}")),
         _input(

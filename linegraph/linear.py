@@ -67,8 +67,8 @@ def linearise(symbolic: Symbolic, at: Mapping[Any, Any]) -> StateSpace:
 
 def _inputs(symbolic: Symbolic) -> tuple[list[Expr], dict[Expr, Expr]]:
     """The inputs that are no derivatives of others, and the symbols of those that are."""
-    steep = {u: sympy.Symbol(f"{u}_rate") for u in symbolic.u}
-    slopes = {u: rate for u, rate in steep.items() if rate in set(symbolic.u)}
+    found = symbolic.tree.layout.slopes
+    slopes = {symbolic.u[k]: symbolic.u[rate] for k, rate in found.items()}
     return [u for u in symbolic.u if u not in slopes.values()], slopes
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from linegraph.assemblies import add_basement, add_rotor, followers_at, locked
 from linegraph.body import GROUND, MASS_CENTER, Body, Placement, inertia_of, unit
-from linegraph.checks import finite, plain, vector
+from linegraph.checks import finite, plain, require_new, vector
 from linegraph.choices import Choices, chosen
 from linegraph.components import Words
 from linegraph.components.forces import forces_of
@@ -137,7 +138,7 @@ class Model(Shown, Words):
         """Declare a number that stays a symbol, or one that follows from earlier ones.
 
         Args:
-            name: unique among parameters.
+            name: unique among parameters, and no reserved word such as t or pi.
             value: the default; or an expression of earlier parameters, as text or sympy's, which is
                 computed wherever the name is used.
             unit: its unit, for readers.
@@ -146,9 +147,8 @@ class Model(Shown, Words):
         Raises:
             ModelError: the name is taken.
         """
-        if name in self.parameters:
-            raise ModelError(f'parameter "{name}"', "is declared twice")
         who = f'parameter "{name}"'
+        require_new(name, self.parameters, who)
         if value is not None:
             finite((value,), who)
             for used in sorted(names_in(value) - self.parameters.keys()):
@@ -161,8 +161,7 @@ class Model(Shown, Words):
         Raises:
             ModelError: the name is taken.
         """
-        if name in self._inputs:
-            raise ModelError(f'input "{name}"', "is declared twice")
+        require_new(name, self._inputs, f'input "{name}"')
         return self._inputs.setdefault(name, Input(name, None, unit, about))
 
     @property
@@ -222,8 +221,8 @@ class Model(Shown, Words):
             ModelError: the name is taken, a number is not finite, the mass is negative.
         """
         who = f'body "{name}"'
-        if name in self.bodies or name == GROUND:
-            raise ModelError(who, "the name is taken; names of bodies are unique")
+        taken = "the name is taken; names of bodies are unique"
+        require_new(name, ChainMap[str, Any](self.bodies, {GROUND: self.ground}), who, taken)
         if mass_center is not None and first_moment is not None:
             raise ModelError(who, "give mass_center or first_moment, not both")
         mass = plain(mass)
@@ -241,8 +240,7 @@ class Model(Shown, Words):
         """Add a frame to a body or to ground; `BodyHandle.frame` is the friendly way."""
         who = f'frame "{body}.{name}"'
         frames = self.ground_frames if body == GROUND else self.bodies[body].frames
-        if name in frames or name == MASS_CENTER:
-            raise ModelError(who, "the name is taken on this body")
+        require_new(name, (*frames, MASS_CENTER), who, "the name is taken on this body")
         if body == GROUND:
             self.ground_frames[name] = placement
         else:
@@ -256,8 +254,7 @@ class Model(Shown, Words):
             ModelError: the name is taken or the axis has no length.
         """
         who = f'joint "{joint.name}"'
-        if joint.name in self._joints or joint.name in self._components:
-            raise ModelError(who, "the name is taken; names of joints are unique")
+        require_new(joint.name, self._edges, who, "the name is taken; names of joints are unique")
         joint = replace(joint, axis=unit(vector(joint.axis, who), who))
         joint.require_start()
         self._joints[joint.name] = joint
@@ -285,16 +282,17 @@ class Model(Shown, Words):
             ModelError: the name is taken, or the element has no place or two.
         """
         who = f'{element.kind} "{element.name}"'
-        if self._taken(element.name) or element.name in self._components:
-            raise ModelError(who, "the name is taken; names of joints and elements are unique")
+        taken = "the name is taken; names of joints and elements are unique"
+        require_new(element.name, self._edges, who, taken)
         if isinstance(element, Element) and (element.between is None) == (element.joint is None):
             raise ModelError(who, "give either between=(tail, head) or joint=...")
         finite(element.values(), who)
         self._elements[element.name] = element
         return element
 
-    def _taken(self, name: str) -> bool:
-        return any(name in known for known in (self._elements, self._joints, self._constraints))
+    @property
+    def _edges(self) -> ChainMap[str, Any]:
+        return ChainMap[str, Any](self._elements, self._joints, self._constraints, self._components)
 
     def relation(self, name: str, rate: Any) -> Relation:
         """Constrain velocities by an expression that is zero and linear in rates; see `Relation`."""
@@ -307,8 +305,8 @@ class Model(Shown, Words):
             ModelError: the name is taken.
         """
         who = f'{limit.kind} "{limit.name}"'
-        if self._taken(limit.name) or limit.name in self._components:
-            raise ModelError(who, "the name is taken; joints, elements and constraints share names")
+        taken = "the name is taken; joints, elements and constraints share names"
+        require_new(limit.name, self._edges, who, taken)
         finite(limit.values(), who)
         found: Limit = aligned(limit, who)
         self._constraints[limit.name] = found
@@ -320,8 +318,7 @@ class Model(Shown, Words):
         Raises:
             ModelError: the name is taken.
         """
-        if any(known.name == name for known in self.outputs):
-            raise ModelError(f'output "{name}"', "is declared twice")
+        require_new(name, [known.name for known in self.outputs], f'output "{name}"')
         self.outputs.append(Output(name, value, unit, about))
         return self.outputs[-1]
 

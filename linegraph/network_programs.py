@@ -13,24 +13,14 @@ from linegraph.program import (
     Quantity,
     Result,
     Routine,
-    Status,
     reads,
 )
+from linegraph.statuses import NO_LOOP_SOLUTION, SINGULAR_NETWORK
 
 if TYPE_CHECKING:
     from linegraph.kinematics import KinematicTree
     from linegraph.shared import Functions
 
-NO_SOLUTION = Status(
-    900,
-    "the algebraic loop of the network has no solution here, or none was found",
-    "NO_LOOP_SOLUTION",
-)
-SINGULAR = Status(
-    901,
-    "the static laws of the network are singular here: a resistance or a ratio is zero",
-    "SINGULAR_NETWORK",
-)
 LOOP_FUNCTION = "algebraic_loop"
 
 
@@ -62,9 +52,9 @@ def algebraic_loop(f: Functions) -> tuple[Program | Routine, ...]:
         given,
         (Result("loop", (size,), (), "unknowns of the algebraic loop"),),
         "newton",
-        (NO_SOLUTION,),
+        (NO_LOOP_SOLUTION,),
         ("loop_equations",),
-        (("size", size), ("failure", NO_SOLUTION[0])),
+        (("size", size),),
     )
     return equations, solver
 
@@ -76,7 +66,7 @@ def checks(f: Functions) -> tuple[Check, ...]:
     sizes = dict.fromkeys(
         f.dag.function("abs", f.exchange.still(pivot)) for pivot in f.exchange.network.pivots
     )
-    return tuple(Check(size, 0, *SINGULAR) for size in sizes if isinstance(size, Node))
+    return tuple(Check(size, 0, *SINGULAR_NETWORK) for size in sizes if isinstance(size, Node))
 
 
 def loop_arguments(f: Functions) -> tuple[str, ...]:

@@ -53,6 +53,9 @@ def observed(
         ModelError: an output names what does not exist.
     """
     values = scope(model, tree, algebra, parameters, state, chords)
+    # an effort has the name of a coordinate or a velocity, which here means that and nothing else
+    own = {x.name for j in model.joints for x in (*j.positions(), *j.velocities())}
+    prescribing = {q.name: k for k, q in enumerate(tree.inputs) if q.name not in own}
     dynamic = False
     found = []
     for output in model.outputs:
@@ -62,10 +65,8 @@ def observed(
                 if variable is not None:
                     dynamic = dynamic or variable[0] in DYNAMIC
                     values[name] = _edge_variable(model, scheme, *variable)
-            for name in sorted(names_in(output.value) & {q.name for q in tree.inputs}):
-                if name not in values:
-                    place = [q.name for q in tree.inputs].index(name)
-                    values[name] = algebra.symbol("u", place)
+            for name in sorted(names_in(output.value) & prescribing.keys()):
+                values.setdefault(name, algebra.symbol("u", prescribing[name]))
             found.append(resolver(algebra, values)(output.value))
         except ModelError as error:
             raise ModelError(f'output "{output.name}"', error.problem) from None

@@ -24,6 +24,7 @@ from linegraph.orthogonality import arms
 from linegraph.parameters import resolver, sample_values
 from linegraph.program import Argument, Call, Check, Program, Result, Routine
 from linegraph.regularity import SINGULAR, sample_tree
+from linegraph.statuses import counted
 from linegraph.tips import seat_of, tipped
 from linegraph.twists import Outlook, columns, matrix
 
@@ -85,14 +86,14 @@ class _Dynamics(NamedTuple):
     """What a frame's inertia is made of: M v̇ + h = Q in coordinates without constraints.
 
     Attributes:
-        names: the velocities.
+        places: those of the velocities in v.
         mass, bias: M and h.
         outward: the velocities from the root to the leaves.
         calls: what computes M and h, and all velocities for those of these coordinates.
         spread: T of v = T w where these w are not all of v, and what T w leaves of v̇.
     """
 
-    names: list[str]
+    places: Sequence[int]
     mass: list[list[Scalar]]
     bias: list[Scalar]
     outward: Sequence[int]
@@ -130,7 +131,7 @@ def _operational(f: Functions, frame: NamedFrame, function: str, dynamics: _Dyna
     )
     bounds = [pivots.bound(x, dynamics.mass[i][i]) for i, x in enumerate(factors.pivots)]
     checks = (
-        *pivots.checks(f, factors.pivots, bounds, dynamics.names),
+        *pivots.checks(f, factors.pivots, bounds, dynamics.places),
         *_checks_of_frame(f, frame, known, inner),
     )
     given = [x for call in dynamics.calls for x in call.arguments if x not in f.head]
@@ -184,9 +185,8 @@ def _open(f: Functions, function: str) -> _Dynamics:
         [f.dag.symbol("M", i * size + j) if used else 0 for j, used in enumerate(row)]
         for i, row in enumerate(f.pattern)
     ]
-    names = [quantity.name for quantity in f.tree.velocities]
     bias = _vector(f, "h", size)
-    return _Dynamics(names, mass, bias, f.tree.outward, (call,))
+    return _Dynamics(range(size), mass, bias, f.tree.outward, (call,))
 
 
 def _closed(f: Functions, function: str) -> _Dynamics:
@@ -199,8 +199,8 @@ def _closed(f: Functions, function: str) -> _Dynamics:
     if not made:
         problem = "it has constraints, and its equations are not reduced to independent coordinates"
         raise _refused(f, function, problem)
-    names = [f.tree.velocities[v].name for _, v in closed_programs.independent(f)]
-    k, n, rows = len(names), len(f.v), ROWS[function]
+    places = [v for _, v in closed_programs.independent(f)]
+    k, n, rows = len(places), len(f.v), ROWS[function]
     if k < rows:
         left = "1 independent velocity" if k == 1 else f"{k} independent velocities"
         problem = f"its constraints leave {left}, fewer than the {rows} rows"
@@ -215,7 +215,7 @@ def _closed(f: Functions, function: str) -> _Dynamics:
     )
     spread = _matrix(f, "T", n, k), _vector(f, "rest", n)
     mass, bias = _matrix(f, "Mr", k, k), _vector(f, "hr", k)
-    return _Dynamics(names, mass, bias, range(k), calls, spread)
+    return _Dynamics(places, mass, bias, range(k), calls, spread)
 
 
 def _refused(f: Functions, function: str, problem: str) -> ModelError:
@@ -232,7 +232,8 @@ def _checks_of_frame(
             about = f'the frame "{frame.name}" cannot move {DIRECTIONS[i]} by itself here'
             name = f"IMMOBILE_{frame.identifier}_{DIRECTIONS[i].replace(' ', '_')}"
             fraction = None if bound == 0 else SINGULAR
-            checks.append(Check(pivot, bound, len(f.v) + i + 1, about, name, fraction))
+            number = counted(len(f.v) + 6 * f.frames.index(frame) + i)
+            checks.append(Check(pivot, bound, number, about, name, fraction))
     return checks
 
 

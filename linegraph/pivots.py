@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from linegraph.expression import Node
 from linegraph.program import Check
 from linegraph.regularity import SINGULAR
+from linegraph.statuses import singular_at
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,14 +26,14 @@ def checks(
     f: Functions,
     pivots: Sequence[Scalar],
     bounds: Sequence[Scalar],
-    names: Sequence[str] = (),
+    places: Sequence[int] = (),
 ) -> tuple[Check, ...]:
-    """One check for each velocity whose pivot is not a number; status k + 1 is the velocity k's.
+    """One check for each velocity whose pivot is not a number.
 
-    `names` are those of the velocities where M is not of all of them.
+    `places` are those of the velocities in v where M is not of all of them.
     """
     first = f.tree.layout.mechanical
-    names = names or [quantity.name for quantity in f.tree.velocities]
+    places = places or range(len(f.tree.velocities))
     found = []
     asked: set[tuple[int, Operand]] = set()
     for i, (pivot, least) in enumerate(zip(pivots, bounds, strict=True)):
@@ -41,8 +42,7 @@ def checks(
         limit = least if i < first else 0
         if isinstance(size, Node) and (size.index, limit) not in asked:
             asked.add((size.index, limit))
-            velocity = names[i]
-            about = f"the mass matrix is singular at {velocity}"
+            status = singular_at(places[i], f.tree.velocities[places[i]].name)
             fraction = SINGULAR if isinstance(limit, Node) or limit else None
-            found.append(Check(size, limit, i + 1, about, f"SINGULAR_AT_{velocity}", fraction))
+            found.append(Check(size, limit, *status, fraction))
     return tuple(found)

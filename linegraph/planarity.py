@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from linegraph.algebra import Floats
 from linegraph.body import GROUND
 from linegraph.joints import Fixed, Prismatic, Revolute, Spherical, Universal
-from linegraph.parameters import resolver, sample_values
+from linegraph.parameters import names_in, resolver, sample_values
 from linegraph.rotation import IDENTITY_MATRIX, product
 from linegraph.vector import Vector, dot, times, transpose
 
@@ -58,9 +58,19 @@ def absolute_angles(model: Model, topology: Topology, wanted: Set[str]) -> dict[
     """For each joint that reaches one of the `wanted` bodies by a turn about its origin: the angle.
 
     A body reached by a joint that shifts keeps the joint's own coordinates, and so do prescribed and
-    coupled joints.
+    coupled joints, and those that relations name.
     """
     return _Survey(model, wanted).along(topology)
+
+
+def related(model: Model) -> set[str]:
+    """The joints whose coordinates or rates a relation names: it needs them as coordinates of the tree."""
+    names = {name for relation in model.relations for name in names_in(relation.rate)}
+    return {
+        joint.name
+        for joint in model.joints
+        if any({q.name, f"der({q.name})"} & names for q in joint.positions())
+    }
 
 
 class _Survey:
@@ -71,7 +81,9 @@ class _Survey:
         values = sample_values(model.parameters.values(), algebra)
         self._resolve = resolver(algebra, values)
         self._joints = {joint.name: joint for joint in model.joints}
-        self._coupled = {name for c in model.couplings for name in (c.joint, c.master)}
+        self._held = {name for c in model.couplings for name in (c.joint, c.master)} | related(
+            model
+        )
         self._terminals = model.terminals()
         self._wanted = wanted
         self._poses = {GROUND: _Pose(IDENTITY_MATRIX, None, ())}
@@ -95,7 +107,7 @@ class _Survey:
         axis = times(at, tuple(self._resolve(x) for x in joint.axis))
         turning = isinstance(joint, Revolute | Universal | Spherical)
         level = far_body in self._wanted and turning and joint.drive is None
-        level = level and joint.name not in self._coupled
+        level = level and joint.name not in self._held
         sign = self._sign(joint, near, axis) * (1 if step.forward else -1)
         if sign:
             own = ((joint.name, sign),)

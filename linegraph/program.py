@@ -61,7 +61,7 @@ class Check:
     """After `node` is known: unless ``node > bound``, stop with `status`, results untouched.
 
     Attributes:
-        name: what languages with named constants call the status.
+        status, about, name: the number, the meaning and the name of the status (`statuses`).
         fraction: of `bound` is what the node must exceed; it stands for the rounding of doubles.
     """
 
@@ -218,7 +218,7 @@ def assemble(
     A node is named when it is used more than once or when the line would grow past `INLINE_LIMIT`.
     """
     live = _live(_roots(results, checks))
-    uses, negated = _count_uses(live, results, checks)
+    uses, negated = count_uses(live, results, checks)
     turned = frozenset(
         node.index
         for node in live
@@ -274,10 +274,16 @@ def _live(roots: Iterable[Node]) -> list[Node]:
     return [found[index] for index in sorted(found)]
 
 
-def _count_uses(
+def count_uses(
     live: list[Node], results: tuple[Result, ...], checks: tuple[Check, ...]
 ) -> tuple[dict[int, int], dict[int, int]]:
-    """How often each node is used, and how often of that only to be negated."""
+    """How often each node is used, and how often of that only to be negated.
+
+    Args:
+        live: all nodes of a program, each after its operands.
+        results: of the program; each entry is a use.
+        checks: of the program; what is compared is used, too.
+    """
     uses = dict.fromkeys((node.index for node in live), 0)
     negated: dict[int, int] = {}
     for root in _roots(results, checks):

@@ -32,6 +32,7 @@ from linegraph.program import (
 from linegraph.prologue import COUNT, with_prologue
 from linegraph.regularity import is_solid, sample_tree
 from linegraph.shared import ARGUMENTS, Functions
+from linegraph.sums import with_sums_collected
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -78,9 +79,8 @@ def module_of(
     chosen = [key for key in PROGRAMS if key in made]
     programs = tuple(program for key in chosen for program in made[key])
     functions.dag.release()
-    constants = 0
-    if "p" in functions.head and prologue:
-        programs, constants = with_prologue(programs)
+    hoisted = prologue and "p" in functions.head
+    programs, constants = with_prologue(programs) if hoisted else (with_sums_collected(programs), 0)
     tree = functions.tree
     closed = closed_programs.listings(functions) if tree.closed else ()
     whole = (network_programs.state_listing(tree),) if "rhs" in chosen else ()

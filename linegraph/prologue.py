@@ -27,6 +27,7 @@ from linegraph.program import (
     assemble,
     live_nodes,
 )
+from linegraph.sums import collected, with_sums_collected
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -104,7 +105,7 @@ def with_prologue(
     constants = _Constants(twins)
     entries = constants.entries
     if not entries:
-        return tuple(programs), 0
+        return with_sums_collected(programs), 0
     result = Result("c", (len(entries),), tuple(entries), "constants")
     about = (
         "Prologue: all that depends on parameters alone. Call it once, and again whenever p changes; the "
@@ -114,9 +115,10 @@ def with_prologue(
     prologue = assemble(PREPARE, about, (parameters,), (result,))
     judged = _judged(twins)
     guarded = (n.index for n in live_nodes(prologue) if n.op == DIV and n.b.index in judged)
-    prologue = replace(prologue, guarded=frozenset(guarded))
+    (prologue,) = collected([replace(prologue, guarded=frozenset(guarded))])
+    reading = collected(constants.read_by(twin) for twin in twins)
     found: dict[str, Program | Routine] = {
-        program.name: constants.read_by(twin) for program, twin in zip(given, twins, strict=True)
+        program.name: twin for program, twin in zip(given, reading, strict=True)
     }
     found |= {
         p.name: _twin(p, len(entries))
@@ -125,7 +127,7 @@ def with_prologue(
     }
     handing = _Handing(programs, prologue)
     whole: list[Program | Routine] = [prologue]
-    for program in programs:
+    for program in with_sums_collected(programs):
         if program.name not in found:
             whole.append(program)
             continue

@@ -51,16 +51,16 @@ def scope(
         if found is not None:
             at, rates = found
             derivatives = joint.rates(algebra, at, rates)
-            if joint.drive is not None:
+            drive = tree.layout.places[joint.name].drive
+            if drive:
                 derivatives = rates
-        elif chords is None or joint.name not in known:
-            continue
+            if drive and isinstance(algebra, Jets):
+                # a prescribed motion goes on by itself, whatever the accelerations
+                at, derivatives = drive, tuple(Jet(x.dx, x.ddx, 0) for x in drive)
         else:
-            try:
-                at, rates = chords.coordinates(known[joint.name])
-            except ModelError:
-                continue  # no formula gives them: a law that names them says so
-            derivatives = joint.rates(algebra, at, rates)
+            if chords is not None and joint.name in known:
+                values |= chords.named(known[joint.name])
+            continue
         for quantity, x, dx in zip(joint.positions(), at, derivatives, strict=True):
             values[quantity.name] = x
             values[f"der({quantity.name})"] = dx
@@ -98,6 +98,7 @@ def relations(
     for relation in tree.relations:
         who = f'relation "{relation.name}"'
         _require_no_input(model, relation)
+        _require_branches(model, tree, relation)
 
         def evaluate(v: Sequence[Scalar], relation: Relation = relation) -> Scalar:
             values = scope(model, tree, algebra, parameters, (state[0], tuple(v)))
@@ -141,6 +142,7 @@ def require_linear(
     for relation in tree.relations:
         who = f'relation "{relation.name}"'
         _require_no_input(model, relation)
+        _require_branches(model, tree, relation)
         found = []
         for v in ([0.0] * size, a, b, both):
             try:
@@ -166,3 +168,15 @@ def _require_no_input(model: Model, relation: Relation) -> None:
             f"names the input {name}, whose derivative is not known; prescribe a joint's motion"
         )
         raise ModelError(f'relation "{relation.name}"', problem)
+
+
+def _require_branches(model: Model, tree: KinematicTree, relation: Relation) -> None:
+    names = names_in(relation.rate)
+    for joint in model.joints:
+        own = {x for q in joint.positions() for x in (q.name, f"der({q.name})")}
+        if names & own and tree.layout.own(joint.name) is None:
+            problem = (
+                f'names {min(names & own)}, but joint "{joint.name}" is no branch of the tree in '
+                "these coordinates, which a relation needs; choose a tree that has it as a branch"
+            )
+            raise ModelError(f'relation "{relation.name}"', problem)

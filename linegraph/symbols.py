@@ -25,7 +25,7 @@ from linegraph.paper_print import PrintedMatrices, printed_matrices
 from linegraph.parameters import valued
 from linegraph.scope import relations
 from linegraph.simplification import BUDGET, Simplifier
-from linegraph.symbol_names import MULTIPLIERS, symbol_names
+from linegraph.symbol_names import MULTIPLIERS
 from linegraph.sympy_walk import Expr, Sympy
 from linegraph.united import exchange_at, network_entries, united_mass_matrix
 
@@ -44,7 +44,8 @@ class Symbolic:
     """A derivation's equations as sympy objects, in closed form.
 
     Coordinates are written as the joints' names; velocities as ``name_dot``, or by their own names
-    (``root_wx``) where v is not the derivative of q; accelerations as ``a_name``. Everything is derived when
+    (``root_wx``) where v is not the derivative of q; accelerations as ``a_name``, efforts as ``u_name``.
+    `symbol_names` says what they are called where something else has such a name. Everything is derived when
     it is first asked for.
 
     Attributes:
@@ -70,7 +71,7 @@ class Symbolic:
         """
         self._derivation = derivation
         self._model = derivation.model
-        self.names = symbol_names(derivation)
+        self.names = derivation.symbol_names
         self._sympy = Sympy(self.names)
         self.dag = Dag()
         self._parameters = self._valued(self.dag)

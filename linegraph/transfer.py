@@ -115,9 +115,6 @@ def coordinates_at(algebra: Any, joint: Any, rotation: Matrix, displacement: Any
     if isinstance(joint, Spherical | Free) and joint.angles is None:
         quaternion = quaternion_of(rotation)
         return quaternion if isinstance(joint, Spherical) else [*displacement, *quaternion]
-    if isinstance(joint, Free):
-        turned = Spherical(joint.name, joint.between, angles=joint.angles)
-        return [*displacement, *turned.measured(algebra, rotation, displacement)]
     return list(joint.measured(algebra, rotation, displacement))
 
 

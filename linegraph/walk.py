@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from linegraph.absolute import floating, turning
 from linegraph.algebra import set_label
 from linegraph.body import GROUND, Placement
 from linegraph.errors import ModelError
@@ -21,7 +22,7 @@ from linegraph.kinematics import (
     mass_center,
     resolved,
 )
-from linegraph.layout import Layout, floating, layout_of, turning
+from linegraph.layout import Layout, layout_of
 from linegraph.parameters import resolver
 from linegraph.rotation import IDENTITY_MATRIX, Rotation, rotation_of
 from linegraph.vector import ZERO, Scalar
@@ -115,7 +116,7 @@ class _Walk:
         forward = step.forward
         if place.in_space:
             # an orientation in space, measured from ground: the link has the body's own axes
-            joint, forward = turning(joint.name, body), True
+            joint, forward = turning(joint.name, body, self._layout.stems[body]), True
             far = Placement(far.at, IDENTITY_MATRIX)
         else:
             alignment = self._alignment(joint)
@@ -126,8 +127,8 @@ class _Walk:
 
     def _float(self, body: str) -> None:
         """A body on its inertia edge: a link of its own, its origin at the mass centre."""
-        place = self._layout.places[body]
-        joint = floating(body)
+        joint = floating(body, self._layout.stems[body])
+        place = self._layout.places[joint.name]
         self._links.append(Link("", -1, joint, True, Rotation(), ZERO, place, NO_MOMENTS))
         center = Placement(mass_center(self._model.bodies[body], self._resolve), IDENTITY_MATRIX)
         self._enter(body, len(self._links) - 1, inverse(center))

@@ -162,7 +162,7 @@ def emitted(derivation: Derivation) -> None:
     for language in codegen.LANGUAGES:
         files = codegen.render(module, language)
         for text in files.values():
-            found = re.search(r"(?<![\w.])-?(nan|inf|zoo)(?![\w.(])", _code(text))
+            found = re.search(r"(?<![\w.\"])-?(nan|inf|zoo|NAN|INFINITY)(?![\w.(\"])", _code(text))
             assert not found, f"{found} is no number"
         if language == "python":
             evaluated(derivation, module, _loaded(files["m.py"]))

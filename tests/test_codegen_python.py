@@ -42,7 +42,7 @@ def test_contents(arm: Any, plain: Any) -> None:
     assert str(inspect.signature(arm.forward_dynamics)) == "(p, t, q, v, u)"
     assert "q: positions, shape (..., NQ)" in arm.mass_matrix.__doc__
     assert "M: the mass matrix, shape (..., NV, NV)" in arm.mass_matrix.__doc__
-    assert "numpy.linalg.LinAlgError: the mass matrix is singular" in arm.forward_dynamics.__doc__
+    assert "StatusError: 1: the mass matrix is singular;" in arm.forward_dynamics.__doc__
     assert "A double pendulum." in arm.__doc__
 
 
@@ -130,14 +130,18 @@ def test_inputs_are_left_alone(arm: Any) -> None:
 
 def test_failing_checks_raise(arm: Any) -> None:
     state = ([0.3, -1.2], [0.8, 0.5], [1.0, -2.0])
-    for bad in (
-        arm.Parameters(m=0.0, I=0.0),
-        arm.Parameters(m=-50.0),
-        arm.Parameters(m=np.nan),
-        arm.Parameters(m=[1.0, 2.0, -50.0]),
+    for bad, name in (
+        (arm.Parameters(m=0.0, I=0.0), "STATUS_1"),
+        (arm.Parameters(m=-50.0), "STATUS_1"),
+        (arm.Parameters(m=np.nan), "NOT_FINITE_INPUT"),
+        (arm.Parameters(m=[1.0, 2.0, -50.0]), "STATUS_1"),
     ):
-        with pytest.raises(np.linalg.LinAlgError, match="the mass matrix is singular"):
+        with pytest.raises(np.linalg.LinAlgError) as caught:
             arm.forward_dynamics(bad, 0.0, *state)
+        assert (caught.value.name, caught.value.status) == (name, arm.STATUSES[name][0])
+        assert str(caught.value) == arm.STATUSES[name][1]
+        again = pickle.loads(pickle.dumps(caught.value))
+        assert (again.name, again.status, str(again)) == (name, *arm.STATUSES[name])
 
 
 def test_parameters_are_a_frozen_record(arm: Any) -> None:

@@ -13,6 +13,7 @@ from emitted import load
 
 import linegraph as lg
 from linegraph.emission import render
+from linegraph.statuses import SINGULAR_POSITION
 from linegraph.transfer import transfer
 
 if TYPE_CHECKING:
@@ -455,7 +456,7 @@ def test_a_weld_too_many_changes_nothing_but_its_reactions() -> None:
 
 
 def test_a_singular_position_is_a_status() -> None:
-    """Parallelograms laid flat may fold either way: status 1 in C, outputs untouched, an error in Python."""
+    """Parallelograms laid flat may fold either way: a status in C, outputs untouched, an error in Python."""
     from closed_examples import system
     from compiled import Failed
 
@@ -464,9 +465,10 @@ def test_a_singular_position_is_a_status() -> None:
     assert np.abs(s.call("constraints", flat, out=[(s.py.NP,)])).max() < 1e-15
     with pytest.raises(Failed) as caught:
         s.accelerate(flat, np.zeros(s.py.NV), [0.0])
-    assert caught.value.status == 1
-    with pytest.raises(np.linalg.LinAlgError, match="the position is singular"):
+    assert caught.value.status == SINGULAR_POSITION.number
+    with pytest.raises(np.linalg.LinAlgError, match="the position is singular") as raised:
         s.py.forward_dynamics(flat, np.zeros(s.py.NV), [0.0])
+    assert raised.value.status == SINGULAR_POSITION.number
     a, _ = s.accelerate(flat + 0.01 * np.array([1, 1, 1, -1, -1]), np.zeros(s.py.NV), [0.0])
     assert a[0] == pytest.approx(-3.5 / 3 * 9.81 * math.cos(0.01), rel=1e-9)
 

@@ -7,7 +7,7 @@ import struct
 import subprocess
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import codegen_samples as samples
 import numpy as np
@@ -18,7 +18,7 @@ from compiled import Compiled
 
 import codegen
 from codegen import Options, real
-from linegraph import Model
+from linegraph import Model, modelfile
 from linegraph.cli import main
 from linegraph.emission import emit, module_for, render
 from linegraph.errors import ModelError, NameRefused
@@ -55,6 +55,40 @@ def deviations() -> dict[str, str]:
     """The rules in the table of the document, with their reasons."""
     rows = re.findall(r"^\| (\d+\.\d+) \| ([^|]+) \|", DOCUMENT, re.MULTILINE)
     return dict(rows)
+
+
+# ---- compilers that cannot
+
+
+def complaint(folder: Path, name: str, *flags: str) -> list[str]:
+    """The errors of gcc, without the places where they are."""
+    command = ["gcc", *flags, "-c", f"{name}.c", "-o", f"{name}.o"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    return re.findall(r"error: (?:#error )?(.*)", done.stderr)
+
+
+def test_floats_before_c99_stop_the_compiler(tmp_path: Path) -> None:
+    """There sinf would be taken for a function that returns int."""
+    if lacking := targets.missing("gcc"):
+        pytest.skip(lacking)
+    emit(modelfile.read(PENDULUM), tmp_path, name="arm", languages=["c"], real="float")
+    said = "floats need the mathematics of C99: compile with -std=c99 or later, or emit with --real double"
+    assert complaint(tmp_path, "arm", "-std=c89")[0] == f'"{said}"'
+    assert said in " ".join(DOCUMENT.split())
+    assert complaint(tmp_path, "arm", "-std=c99") == []
+    assert complaint(tmp_path, "arm", "-x", "c++", "-std=c++98") == []
+
+
+@pytest.mark.parametrize("options", [{"batch": True}, {"trig": "inline"}])
+def test_lanes_that_there_are_not_stop_the_compiler(options: Any, tmp_path: Path) -> None:
+    if lacking := targets.missing("gcc"):
+        pytest.skip(lacking)
+    emit(modelfile.read(PENDULUM), tmp_path, name="arm", languages=["c"], **options)
+    said = "ARM_LANES must be 1, 2, 4 or 8: define it as one of these, or leave it undefined"
+    for wrong in (16, 3, 0, -1):
+        assert complaint(tmp_path, "arm", f"-DARM_LANES={wrong}") == [f'"{said}"']
+    for right in (1, 2, 4, 8):
+        assert complaint(tmp_path, "arm", f"-DARM_LANES={right}", "-Wno-psabi") == []
 
 
 # ---- floats
@@ -180,7 +214,7 @@ def test_an_impossible_prefix_is_refused(prefix: str) -> None:
 def test_statuses_are_returned_by_name(name: str) -> None:
     files = emitted(name)
     code = bare(files["model.c"])
-    helper = r"(?:static|MODEL_PART) (?:int|void|double) model_(?!\w+_part\d).*?\n}\n"
+    helper = r"(?:static|MODEL_PART) (?:int|void|double) model_(?!\w+_(?:part\d|core\()).*?\n}\n"
     outside = re.sub(helper, "", code, flags=re.DOTALL)
     assert not re.search(r"return \d", outside)
     enumerated = dict(re.findall(r"^    (MODEL_\w+) = (\d+)", files["model.h"], re.MULTILINE))
@@ -196,8 +230,10 @@ def test_statuses_are_returned_by_name(name: str) -> None:
 
 def test_statuses_say_what() -> None:
     files = codegen.render(targets.module("double_pendulum"), "c")
+    enumeration = files["model.h"]
+    assert "MODEL_SINGULAR_AT_ELBOW = 2, /* the mass matrix is singular at elbow */" in enumeration
     assert (
-        "MODEL_SINGULAR_AT_ELBOW = 2 /* the mass matrix is singular at elbow */" in files["model.h"]
+        "MODEL_NOT_FINITE_INPUT = 902, /* an argument is infinite or not a number */" in enumeration
     )
 
 
@@ -272,11 +308,11 @@ def test_a_report_counts_what_is_written() -> None:
     source = codegen.render(module, "c")["model.c"]
     for program in module.programs:
         sums, products, quotients, functions, variables, size, lines = rows[program.name]
-        body = re.search(
-            rf"^\w+ model_{program.name}\([^{{}}]*\)\n\{{\n.*?^}}", source, re.M | re.S
-        )
-        assert body is not None
-        assert int(lines) == body[0].count("\n") + 1
+        # what computes comes first, before the function around it that reports statuses
+        start = rf"^(?:MODEL_PART )?\w+ model_{program.name}(?:_core)?"
+        bodies = list(re.finditer(rf"{start}\([^{{}}]*\)\n\{{\n.*?^}}", source, re.M | re.S))
+        body = bodies[0]
+        assert int(lines) == sum(found[0].count("\n") + 1 for found in bodies)
         assert int(variables) == len(re.findall(r"const double t\d+ =", body[0]))
         assert f"Takes at most {size} bytes of stack." in header
         if functions != "-":

@@ -42,15 +42,15 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("simplification",),
     ("state_space", "tidy"),
     ("parameters", "program", "rotation", "topology"),
-    ("checks", "constants", "elements"),
-    ("body", "choices"),
+    ("checks", "constants", "elements", "statuses"),
+    ("body", "choices", "sums"),
     ("components",),
     ("constraints", "joints", "network"),
-    ("terminals", "words"),
+    ("register", "terminals", "words"),
     ("assemblies",),
     ("model",),
     ("exchange", "planarity"),
-    ("formulation",),
+    ("absolute", "formulation"),
     ("layout",),
     ("kinematics",),
     ("expansion", "factorization", "spins", "walk"),
@@ -102,7 +102,8 @@ SHOWING = re.compile(r"_repr_[a-z]+_")
 
 NO_PHYSICS = {"graph": {"errors"}, "topology": {"errors", "graph"}}
 CODEGEN_SEES = {
-    f"linegraph.{name}" for name in ("errors", "expression", "functions", "program", "vectors")
+    f"linegraph.{name}"
+    for name in ("errors", "expression", "functions", "program", "statuses", "vectors")
 }
 CLOSED_FORMS = (
     "dynamic",
@@ -128,7 +129,7 @@ ONLY_THERE = {
         "linegraph.emission",
         "linegraph.evaluation",
         "linegraph.named_frames",
-        "linegraph.cli",
+        "linegraph.cli_options",
     },
 }
 PRINTING = ("linegraph.cli", "linegraph.cli_output", "linegraph.__main__")

@@ -101,7 +101,7 @@ def chain() -> lg.Derivation:
         ("delta_angle", "φ_δ", r"\phi_{\delta}", "<msub><mi>φ</mi><mi>δ</mi></msub>"),
         ("u_delta_angle", "u_δ_angle", r"u_{\delta,\mathrm{angle}}",
          "<msub><mi>u</mi><mrow><mi>δ</mi><mo>,</mo><mi>angle</mi></mrow></msub>"),
-        ("psi_wx", "u_ψ_wx", r"u_{\psi,\mathrm{wx}}",
+        ("u_psi_wx", "u_ψ_wx", r"u_{\psi,\mathrm{wx}}",
          "<msub><mi>u</mi><mrow><mi>ψ</mi><mo>,</mo><mi>wx</mi></mrow></msub>"),
         ("psi_f1", "λ_ψ_f₁", r"\lambda_{\psi,f_{1}}",
          "<msub><mi>λ</mi><mrow><mi>ψ</mi><mo>,</mo><msub><mi>f</mi><mn>1</mn></msub></mrow></msub>"),

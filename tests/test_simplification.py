@@ -23,6 +23,7 @@ from form_measures import (
 )
 from sympy import cos, sin
 
+from linegraph.errors import ModelError
 from linegraph.expression import Dag
 from linegraph.simplification import Simplifier
 from linegraph.sympy_walk import evaluate
@@ -274,6 +275,34 @@ def test_denominators_stay_as_they_were() -> None:
     found = simplified(given)
     assert operations(found) <= operations(given)
     assert vanishes(found - given)
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_high_powers_are_powers(level: str) -> None:
+    """The highest power that a model's expressions may have, and products of such powers."""
+    m, q = sympy.symbols("m q1")
+    for given in (m * q**64, m / q**64, sympy.sin(q) ** 64):
+        assert simplified(given, level) == given
+    assert vanishes(simplified((q + m) ** 64, level) - (q + m) ** 64)
+    simplifier = Simplifier(lambda symbol: q, level)
+    x = evaluate(q**64, dag := Dag(), {"q1": dag.symbol("q", 0)})
+    assert simplifier(x * x) == q**128
+    assert simplifier(1 / (x * x * x)) == q**-192
+
+
+@pytest.mark.parametrize("power", [20000, -20000])
+def test_higher_powers_are_refused_as_that(power: int) -> None:
+    dag = Dag()
+    x: Any = dag.symbol("q", 0)
+    for _ in range(4):  # 20000 = 2 * 10**4
+        x = (x * x) * ((x * x) * (x * x)) * (x * x) * (x * x)
+    x = x * x if power > 0 else 1 / (x * x)
+    simplifier = Simplifier(lambda symbol: ANGLES[0])
+    problem = (
+        r"^force: has a power above 16383, too high for a closed form; .*level \"none\" writes it"
+    )
+    with pytest.raises(ModelError, match=problem):
+        simplifier(x, "force")
 
 
 # ---- the measures themselves

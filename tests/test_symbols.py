@@ -163,7 +163,9 @@ def test_a_parameter_with_the_name_of_a_coordinate_is_refused() -> None:
     model = Model("m")
     body = model.body("b", mass=model.parameter("slide", 1.0))
     model.prismatic("slide", between=("ground", body))
-    with pytest.raises(ModelError, match='parameter "slide": has the name of a coordinate; rename'):
+    with pytest.raises(
+        ModelError, match='its coordinate "slide" has the name of a parameter; rename'
+    ):
         _ = derive(model).symbolic
 
 

@@ -329,7 +329,7 @@ WARNINGS = {
         "\n".join([link("a") + link("b") + link("c"),
                    joint("j", "a", "b", inner='<dynamics damping="0" friction="0"/>'),
                    joint("k", "b", "c", inner='<dynamics friction="0.1"/>')]),
-        'r.urdf:4: joint "k": damping and friction (it) are not part of the equations',
+        'r.urdf:4: joint "k": damping and friction are ignored',
     ),
     "ground": (
         link("ground"),

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from linegraph.checks import finite
+from linegraph.checks import finite, require_new
 from linegraph.domains import Domain, declared
-from linegraph.errors import ModelError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -24,8 +23,9 @@ class Networks:
     _components: dict[str, Component]
     domains: dict[str, Domain]
 
-    def _taken(self, name: str) -> bool:
-        """Whether something that is no component has a name."""
+    @property
+    def _edges(self) -> Mapping[str, Any]:
+        """By their names all things that have edges, but bodies."""
         raise NotImplementedError
 
     def domain(
@@ -51,8 +51,8 @@ class Networks:
             ModelError: the name is taken, or something is missing.
         """
         who = f'{component.kind} "{component.name}"'
-        if component.name in self._components or self._taken(component.name):
-            raise ModelError(who, "the name is taken; joints, elements and components share names")
+        taken = "the name is taken; joints, elements and components share names"
+        require_new(component.name, self._edges, who, taken)
         component.require_fields()
         finite(component.values(), who)
         return self._components.setdefault(component.name, component)

@@ -15,6 +15,7 @@ from linegraph.vector import ZERO, Scalar, skew
 
 if TYPE_CHECKING:
     from linegraph.algebra import Algebra
+    from linegraph.vector import Matrix, Vector
 
 
 @dataclass(frozen=True)
@@ -114,3 +115,18 @@ class Free(Joint):
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
         """Nothing."""
         return ()
+
+    def measured(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[Scalar, ...]:
+        """The position and the angles; of a quaternion, whose sign is open, there is no formula."""
+        return (*displacement, *self._ball.measured(algebra, rotation, displacement))
+
+    def duals(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[tuple[Vector, Vector], ...]:
+        """Along and about head axes; with angles along tail axes, and about the axes of the angles."""
+        if self.angles is None:
+            return super().duals(algebra, rotation, displacement)
+        along = tuple((ZERO, row) for row in rotation)
+        return (*along, *self._ball.duals(algebra, rotation, displacement))

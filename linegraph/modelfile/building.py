@@ -29,9 +29,19 @@ from linegraph.modelfile.tables import (
     TYPES,
     freedoms_of,
 )
+from linegraph.register import (
+    Claim,
+    claims_of,
+    claims_of_constraint,
+    clash,
+    input_claim,
+    located,
+    output_claim,
+    parameter_claim,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from linegraph.joints import Joint
     from linegraph.modelfile.document import Document
@@ -88,6 +98,7 @@ class _Builder:
         self._model = model
         self._names = Names()
         self._refused: set[tuple[str, str]] = set()
+        self._owners: dict[str, Claim] = {}
 
     def build(self) -> Model:
         """The whole model."""
@@ -98,6 +109,10 @@ class _Builder:
             self._data.get("parameters", {}), self._spot("parameters"), self._names, self._model
         )
         read_inputs(self._data.get("inputs", {}), self._spot("inputs"), self._names, self._model)
+        for name in self._model.parameters:
+            self._claim(("parameters", name), [parameter_claim(name)])
+        for given in self._model.inputs:
+            self._claim(("inputs", given.name), [input_claim(given.name)])
         for kind, name in self._tables("domain"):
             self._element(kind, name)
         self._gravity()
@@ -116,7 +131,11 @@ class _Builder:
         for kind, name in self._tables(*COMPONENTS):
             self._element(kind, name)
         self._formulation()
+        for limit in self._model.constraints:
+            self._claim((limit.kind, limit.name), claims_of_constraint(limit))
         read_outputs(self._data.get("outputs", {}), self._spot("outputs"), self._names, self._model)
+        for output in self._model.outputs:
+            self._claim(("outputs", output.name), [output_claim(output.name)])
         return self._model
 
     def _spot(self, *path: str) -> Spot:
@@ -234,6 +253,7 @@ class _Builder:
                     self._model.basement(**found)
                     joint = self._model.joints[-1]
                     self._names.coordinates |= {quantity.name for quantity in joint.positions()}
+                    self._claim(("basement",), claims_of(joint))
 
     def _body(self, kind: str, name: str) -> None:
         found = self._read(kind, name)
@@ -276,28 +296,31 @@ class _Builder:
                 self._model.couple(name, follows.pop("joint"), **follows)
 
     def _note_coordinates(self, kind: str, name: str, joint: Joint) -> None:
-        """Coordinates may be named in laws, so that no two things may have one name."""
+        """Coordinates may be named in laws."""
         coordinates = [quantity.name for quantity in joint.positions()]
-        for coordinate in coordinates:
-            taken = self._taken(coordinate)
-            if taken:
-                problem = (
-                    f'its coordinate "{shown(coordinate)}" has the name of {taken}; rename one'
-                )
-                self._spot(kind, name).error(problem)
+        self._claim((kind, name), claims_of(joint))
         self._names.coordinates |= set(coordinates)
         self._names.joints[name] = joint.freedoms
         if coordinates != [name]:
             self._names.several[name] = coordinates
 
-    def _taken(self, name: str) -> str:
-        if name in self._names.parameters:
-            return "a parameter"
-        if name in self._names.inputs:
-            return "an input"
-        return "another coordinate" if name in self._names.coordinates else ""
+    def _claim(self, path: tuple[str, ...], claims: Iterable[Claim]) -> None:
+        """Note what owns names; what meets a name of something else is an error, said once."""
+        places = self._model.places
+        problems = []
+        for claim in claims:
+            first = self._owners.setdefault(claim.name, claim)
+            self._names.owners.setdefault(claim.name, located(first, places))
+            if first is not claim:
+                problems.append(clash(first, claim, places))
+        if problems:
+            self._spot(*path).error(problems[0])
 
     def _element(self, kind: str, name: str) -> None:
+        given = self._data[kind][name]
+        joint = given.get("joint") if isinstance(given, dict) else None
+        # in a joint called x, x is one number, whether the element's own or the coordinate
+        self._names.shared = "x" if joint == "x" and not given.get("length") else ""
         found = self._read(kind, name)
         if found is not WRONG:
             with self._report.placed((kind, name)):

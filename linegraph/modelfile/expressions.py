@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.algebra import Floats
 from linegraph.errors import ModelError
-from linegraph.formula import CONSTANTS, parse, variable_of
-from linegraph.functions import ARITY
+from linegraph.formula import parse, variable_of
+from linegraph.register import OWN, own_problem
 
 if TYPE_CHECKING:
     from linegraph.formula import Formula
@@ -44,9 +44,6 @@ ALLOWED = {
     Scope.LAW: "x, v, numbers, parameters, t, inputs, coordinates and their rates may stand here",
 }
 
-RESERVED = frozenset({"t", "der", "input", *CONSTANTS, *ARITY})
-"""Names with a meaning of their own in expressions."""
-
 
 @dataclass
 class Names:
@@ -64,6 +61,8 @@ class Names:
         components: the components of networks, by type.
         domains: the subspaces that the file adds.
         incomplete: a joint is wrong, so that not all coordinates are known.
+        owners: what else may own a name that an element's law has for itself: what it is, and its line.
+        shared: what of these is one and the same number in the element that is read now.
     """
 
     parameters: dict[str, float | None] = field(default_factory=dict)
@@ -77,6 +76,8 @@ class Names:
     components: dict[str, str] = field(default_factory=dict)
     domains: set[str] = field(default_factory=set)
     incomplete: bool = False
+    owners: dict[str, str] = field(default_factory=dict)
+    shared: str = ""
 
     def known(self, scope: Scope) -> list[str]:
         """All that may be named in a scope."""
@@ -87,7 +88,7 @@ class Names:
             names += [*self.inputs, *self.coordinates]
         if scope >= Scope.LAW:
             names += ["x", "v"]
-        return names
+        return list(dict.fromkeys(names))
 
 
 def read_expression(
@@ -118,9 +119,8 @@ def read_expression(
 def _own_problem(name: str, names: Names) -> str:
     if not _declared(name, names):
         return ""
-    return (
-        f'"{name}" is of the component itself here, but something else has this name; rename that'
-    )
+    owner = _owner(name, names)
+    return f'"{name}" is of the component itself here, but {owner} has this name too; rename that'
 
 
 def _problem(name: str, scope: Scope, spot: Spot, names: Names) -> str:
@@ -136,16 +136,35 @@ def _problem(name: str, scope: Scope, spot: Spot, names: Names) -> str:
         several = _several(inner, names)
         hint = several or spot.report.hint(inner, sorted(names.coordinates))
         return f'{name}: there is no coordinate "{inner}"{hint}'
-    if not rate and scope >= Scope.LAW and name in ("x", "v") and _declared(name, names):
-        return f'"{name}" is the element\'s own here, but something else has this name; rename that'
+    if not rate and scope >= Scope.LAW and name in OWN and _declared(name, names):
+        return "" if name == names.shared else own_problem(name, _owner(name, names))
     if not rate and name in names.known(scope):
         return ""
     if rate or name in ("t", "x", "v") or _declared(name, names):
         return f"{name} cannot stand here: {ALLOWED[scope]}"
     if names.incomplete and scope >= Scope.STATE:
         return ""
-    hint = _several(name, names) or spot.report.hint(name, names.known(scope))
+    hint = (
+        _several(name, names)
+        or _rate_meant(name, scope, names)
+        or spot.report.hint(name, names.known(scope))
+    )
     return f'there is no "{name}"{hint}'
+
+
+def _rate_meant(name: str, scope: Scope, names: Names) -> str:
+    """How to write what looks like the rate of a coordinate: ``x_dot``, ``dx``, ``xdot``."""
+    for inner in (name.removesuffix("_dot"), name.removesuffix("dot"), name.removeprefix("d")):
+        own = scope >= Scope.LAW and inner == "x"
+        if inner != name and scope >= Scope.STATE and (own or inner in names.coordinates):
+            ways = ["v for the element's own rate"] if scope >= Scope.LAW else []
+            ways += [f"der({inner}) for the rate of {inner}"] if inner in names.coordinates else []
+            return f"; write {' or '.join(ways)}"
+    return ""
+
+
+def _owner(name: str, names: Names) -> str:
+    return names.owners.get(name, "something else")
 
 
 def _variable_problem(

@@ -6,7 +6,10 @@ import hashlib
 import os
 from pathlib import PurePath
 
+from linegraph.algebra import Floats
+from linegraph.body import about_one_axis, impossible
 from linegraph.errors import ModelError
+from linegraph.kinematics import central_inertia
 from linegraph.model import SNAP, Model
 from linegraph.modelfile.building import build
 from linegraph.modelfile.document import parse_document, read_bytes
@@ -14,6 +17,7 @@ from linegraph.modelfile.names import name_problem
 from linegraph.modelfile.report import Report
 from linegraph.modelfile.tables import FLAT
 from linegraph.network.edges import dangling, edges_of, projections
+from linegraph.parameters import resolver, sample_values
 
 
 def read(path: str | os.PathLike[str], *, snap: float = SNAP) -> Model:
@@ -60,11 +64,38 @@ def parse(text: bytes, source: str, *, snap: float = SNAP) -> Model:
     model = build(document, stem if not name_problem(stem, dots=True) else "model", report, snap)
     report.conclude()
     model.source = report.source
-    model.warnings += _loose_ends(model)
+    model.warnings += [*_impossible(model), *_loose_ends(model)]
     told = f"Derived from a model file with SHA-256 {hashlib.sha256(text).hexdigest()}."
     about = model.about.rstrip()
     model.about = f"{about}{'' if about[-1] in '.!?' else '.'} {told}" if about else told
     return model
+
+
+def _impossible(model: Model) -> list[str]:
+    """Warnings of bodies whose inertia no distribution of mass has, for the parameters' own values.
+
+    Inertia about one axis alone is fine: of rotors, and of models in a plane, where nothing else counts.
+    """
+    if any(p.value is None for p in model.parameters.values()):
+        return []
+    algebra = Floats()
+    found = []
+    try:
+        resolve = resolver(algebra, sample_values(model.parameters.values(), algebra))
+        for body in model.bodies.values():
+            tensor = central_inertia(body, resolve)
+            problem = "" if about_one_axis(tensor) else impossible(tensor)
+            if problem:
+                place = _place(model, f'body "{body.name}"')
+                found.append(f'{place}: body "{body.name}": no body has this inertia: {problem}')
+    except (ModelError, ArithmeticError):
+        return []  # told with its place when the model is derived
+    return found
+
+
+def _place(model: Model, thing: str) -> str:
+    line = model.places.get(thing)
+    return f"{model.source}{f':{line}' * (line is not None)}"
 
 
 def _loose_ends(model: Model) -> list[str]:
@@ -79,8 +110,7 @@ def _loose_ends(model: Model) -> list[str]:
     for graph in graphs:
         for vertex, edge in dangling(graph):
             component = owners[edge]
-            line = model.places.get(f'{component.kind} "{component.name}"')
-            place = f"{model.source}{f':{line}' * (line is not None)}"
+            place = _place(model, f'{component.kind} "{component.name}"')
             found.append(
                 f'{place}: {component.kind} "{component.name}": nothing else is connected to its '
                 f'{graph.domain} vertex "{vertex}", so nothing flows through it'

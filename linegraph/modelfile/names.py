@@ -5,7 +5,7 @@ from __future__ import annotations
 import keyword
 import re
 
-from linegraph.modelfile.expressions import RESERVED
+from linegraph.checks import RESERVED, reserved_problem
 from linegraph.modelfile.report import shown
 
 LONGEST_NAME = 100
@@ -36,7 +36,7 @@ def symbol_problem(name: str) -> str:
     if "__" in name or len(name) > LONGEST_NAME:
         return f'"{shown(name)}" cannot be emitted: at most {LONGEST_NAME} characters, no "__"'
     if name in RESERVED:
-        return f'"{name}" has a meaning of its own in expressions; choose another name'
+        return reserved_problem(name)
     if keyword.iskeyword(name):
         return f'"{name}" is a word of Python, in which code is emitted; choose another name'
     return ""

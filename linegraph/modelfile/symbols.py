@@ -107,8 +107,6 @@ def read_inputs(tables: Any, spot: Spot, names: Names, model: Model) -> None:
     for name, given in tables.items():
         place = spot.at(name)
         problem = symbol_problem(name)
-        if not problem and name in names.parameters:
-            problem = "a parameter has this name too; rename one"
         if problem:
             place.error(problem)
         elif not isinstance(given, dict):

@@ -11,6 +11,7 @@ from dataclasses import MISSING, dataclass, fields, replace
 from inspect import cleandoc
 from typing import TYPE_CHECKING, Any
 
+from linegraph.body import symmetric
 from linegraph.choices import REACTION_AXES
 from linegraph.components import COMPONENTS
 from linegraph.constraints import CONSTRAINTS, Constraint
@@ -75,11 +76,11 @@ class Inertia:
         ]
         if any(row is WRONG for row in rows):
             return WRONG
-        if any(rows[i][j] != rows[j][i] for i in range(3) for j in range(i)):
+        found = symmetric(rows)
+        if found is None:
             spot.error("is not symmetric")
             return WRONG
-        entries = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
-        return {key: rows[i][j] for key, (i, j) in zip(ENTRIES, entries, strict=True)}
+        return dict(zip(ENTRIES, found, strict=True))
 
     def schema(self) -> Schema:
         """One of three shapes."""

@@ -125,28 +125,23 @@ def names_of(derivation: Derivation) -> dict[str, Name]:
         for joint in model.joints
         for quantity in (*joint.positions(), *joint.velocities())
     }
-    positions = {quantity.name for quantity in tree.positions}
-    for place, quantity in enumerate(tree.positions):
-        own = _coordinate(quantity.name, owners)
-        found[quantity.name] = replace(own, role=COORDINATE, place=place)
+    symbols = derivation.symbol_names
+    for place, name in enumerate(symbols["q"]):
+        found[name] = replace(_coordinate(name, owners), role=COORDINATE, place=place)
     for place, quantity in enumerate(tree.velocities):
-        if quantity.name in positions:
-            rate = found[quantity.name].rate()
-            found[f"{quantity.name}_dot"] = replace(rate, place=place)
+        if quantity.name in symbols["q"]:
+            rate = replace(found[quantity.name].rate(), place=place)
         else:
             rate = replace(_coordinate(quantity.name, owners), role=RATE, place=place)
-            found[quantity.name] = rate
-        found[f"a_{quantity.name}"] = rate.rate()
+        found[symbols["v"][place]] = rate
+        found[symbols["a"][place]] = rate.rate()
     _dependent(model, owners, found)
-    rates = {q.name if q.name not in positions else f"{q.name}_dot" for q in tree.velocities}
-    for place, quantity in enumerate(tree.inputs):
+    for place, (quantity, symbol) in enumerate(zip(tree.inputs, symbols["u"], strict=True)):
         name = quantity.name
-        taken = name in positions or name in rates
-        if taken or quantity.about.startswith("effort"):
+        if symbol != name:  # an effort
             joint, suffix = owners.get(name, (name, name))
             subs = (lower(joint), *([suffix] if name != joint else []))
-            own = Name("u", subs, role=INPUT, place=place)
-            found[f"u_{name}" if taken else name] = own
+            found[symbol] = Name("u", subs, role=INPUT, place=place)
         else:
             found[name] = replace(shaped(name), role=INPUT, place=place)
     return _multipliers(derivation, found)
@@ -197,7 +192,9 @@ def _multipliers(derivation: Derivation, found: dict[str, Name]) -> dict[str, Na
             parts = (component.name, own) if own != v.name else (v.name,)
             names.append((f"{v.name}_drive", (*parts, "drive")))
     names += [(r.equation().name, (r.equation().name,)) for r in tree.relations]
+    known = derivation.symbol_names["lam"]
     for place, (name, words) in enumerate(names):
         subs = tuple(map(lower, words))
-        found.setdefault(name, Name("λ", subs, role=INPUT, place=1000 + place))
+        symbol = name if f"lam_{name}" not in known else f"lam_{name}"
+        found.setdefault(symbol, Name("λ", subs, role=INPUT, place=1000 + place))
     return found

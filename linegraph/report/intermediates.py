@@ -46,7 +46,7 @@ def symbols_of(subject: Subject, *, entries: bool = False) -> Callable[[str, Any
         "a": subject.a_names,
         "u": subject.u_names,
         "lam": [quantity.name for quantity in subject.multipliers],
-        "loop": [] if subject.network is None else list(subject.network.loop_names),
+        "loop": subject.loop_names,
     }
 
     taken = {(name.letter, name.subs) for name in subject.look.names.values()}

@@ -159,9 +159,8 @@ def _joint(subject: Subject, joint: Joint) -> tuple[Text, Text]:
     for quantity in joint.velocities() if acting else ():
         if quantity.name not in given:
             continue  # it follows another joint
-        name = f"u_{quantity.name}" if f"u_{quantity.name}" in subject.look.names else quantity.name
         efforts += [", "] if efforts else []
-        efforts.append(subject.look.name(name))
+        efforts.append(subject.look.name(subject.efforts[quantity.name]))
     if joint.drive is not None:
         by = "inputs" if joint.drive == BY_INPUT else "the time"
         efforts = [f"what drives it; its motion is prescribed by {by}"]
@@ -180,7 +179,7 @@ def _constraints(subject: Subject) -> tuple[Block, ...]:
         parts: list[Inline] = []
         for name in loose:
             parts += [", "] if parts else []
-            parts.append(subject.look.name(name))
+            parts.append(subject.look.name(subject.multiplier_symbols[name]))
         about = "; ".join(q.about for q, _ in limit.equations())
         rows.append(((Code(limit.name),), (limit.kind,), tuple(parts), (about,)))
     for relation in subject.model.relations:
@@ -189,7 +188,7 @@ def _constraints(subject: Subject) -> tuple[Block, ...]:
             (
                 (Code(relation.name),),
                 ("relation",),
-                (subject.look.name(quantity.name),),
+                (subject.look.name(subject.multiplier_symbols[quantity.name]),),
                 (quantity.about,),
             )
         )
@@ -298,7 +297,7 @@ def _symbol(subject: Subject, branches: dict[str, Branch], kind: str, place: Any
     if kind == CONSTANT:
         return number(float(Fraction(place)))
     if kind == LOOP:
-        return subject.look.name(subject.network.loop_names[place])
+        return subject.look.name(subject.loop_names[place])
     if kind in ("X", "Y") and not branches[place].port.spatial:
         domain = branches[place].port.domain
         assert domain not in SPATIAL

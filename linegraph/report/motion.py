@@ -99,10 +99,9 @@ def _rows(subject: Subject) -> list[Row]:
 
 def _closed(subject: Subject, entries: list[Any]) -> list[Math]:
     from linegraph.simplification import Simplifier
-    from linegraph.symbol_names import symbol_names
     from linegraph.sympy_walk import Sympy
 
-    names = Sympy(symbol_names(subject.derivation))
+    names = Sympy(subject.derivation.symbol_names)
     simplifier = Simplifier(lambda symbol: names.symbol(*symbol), subject.level, MOST_PRODUCTS)
     found = simplifier.all(entries, "mass centres")
     return [subject.look.tree(subject.valued(x)) for x in found]

@@ -179,8 +179,7 @@ def _efforts(subject: Subject) -> list[tuple[bool, Math]]:
         for quantity in joint.velocities():
             if quantity.name not in given:
                 continue  # it follows another joint
-            name = f"u_{quantity.name}"
-            effort = subject.look.name(name if name in subject.look.names else quantity.name)
+            effort = subject.look.name(subject.efforts[quantity.name])
             rate = f"{quantity.name}_dot" if quantity.name in own else quantity.name
             terms.append((False, Product((effort, _varied(subject.look.name(rate))))))
     return terms

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -126,28 +127,43 @@ class Subject:
     @cached_property
     def v_names(self) -> list[str]:
         """The symbols of velocities."""
-        known = set(self.q_names)
-        names = (quantity.name for quantity in self.tree.velocities)
-        return [f"{name}_dot" if name in known else name for name in names]
+        return list(self.derivation.symbol_names["v"])
 
     @cached_property
     def a_names(self) -> list[str]:
         """The symbols of their derivatives."""
-        return [f"a_{quantity.name}" for quantity in self.tree.velocities]
+        return list(self.derivation.symbol_names["a"])
 
     @cached_property
     def u_names(self) -> list[str]:
         """The symbols of inputs."""
-        known = {*self.q_names, *self.v_names}
-        names = (quantity.name for quantity in self.tree.inputs)
-        return [f"u_{name}" if name in known else name for name in names]
+        return list(self.derivation.symbol_names["u"])
+
+    @cached_property
+    def efforts(self) -> dict[str, str]:
+        """The symbols of inputs by their names."""
+        return dict(zip((x.name for x in self.tree.inputs), self.u_names, strict=True))
+
+    @cached_property
+    def loop_names(self) -> list[str]:
+        """The symbols of an algebraic loop's unknowns."""
+        return list(self.derivation.symbol_names["loop"])
+
+    @cached_property
+    def multiplier_symbols(self) -> dict[str, str]:
+        """The symbols of λ by their names."""
+        from linegraph.closure import equations
+
+        names = (equation.multiplier.name for equation in equations(self.tree))
+        return dict(zip(names, self.derivation.symbol_names["lam"], strict=True))
 
     @cached_property
     def multipliers(self) -> list[Quantity]:
-        """λ."""
+        """λ, by the names of their symbols."""
         from linegraph.closure import equations
 
-        return [e.multiplier for e in equations(self.tree)]
+        found = (equation.multiplier for equation in equations(self.tree))
+        return [replace(q, name=self.multiplier_symbols[q.name]) for q in found]
 
     def symbols(self, names: Iterable[str]) -> list[Math]:
         """The looks of some names."""

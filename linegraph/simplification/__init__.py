@@ -110,7 +110,7 @@ class Simplifier:
         """The closed forms of the scalars of one quantity, within one budget.
 
         Raises:
-            ModelError: they have too many terms.
+            ModelError: they have too many terms, or a power that is too high.
         """
         given = list(given)
         self._ring.budget = self._ring.work + self._budget
@@ -119,9 +119,9 @@ class Simplifier:
             self._progress(f"simplifying {what} {bar(n, len(given))}")
             try:
                 found.append(self._closed(x))
-            except Swollen:
+            except Swollen as swollen:
                 problem = (
-                    "has too many terms for a closed form; ask for its function, or see it with named "
+                    f"{swollen.problem} for a closed form; ask for its function, or see it with named "
                     'intermediates in the report; the level "none" writes it as derived'
                 )
                 raise ModelError(what, problem) from None

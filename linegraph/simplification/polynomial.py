@@ -10,6 +10,7 @@ The exponents of a term are the digits of one integer, so that multiplying terms
 
 from __future__ import annotations
 
+import struct
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from linegraph.expression import Number
@@ -26,8 +27,8 @@ Harmonic: TypeAlias = tuple[tuple[int, int], ...]
 
 SYMBOL, SIN, COS, ROOT, INVERSE, FUNCTION = "symbol", "sin", "cos", "root", "inverse", "function"
 
-BITS = 8
-ZERO_DIGIT = 64
+BITS = 16
+ZERO_DIGIT = 1 << (BITS - 2)
 """What is added to a digit so that exponents may be negative; they stay below it."""
 
 MOST_ANGLES = 4
@@ -37,7 +38,15 @@ COORDINATES = "q"
 
 
 class Swollen(Exception):
-    """An expression has more terms than the budget allows."""
+    """An expression has more terms than the budget allows; `problem` says it."""
+
+    problem = "has too many terms"
+
+
+class TooHigh(Swollen):
+    """A power is beyond what terms can hold."""
+
+    problem = f"has a power above {ZERO_DIGIT - 1}, too high"
 
 
 class Generator(NamedTuple):
@@ -135,10 +144,11 @@ class Ring:
         """The generators in a term, by place, and their exponents."""
         found = self._exponents.get(term)
         if found is None:
-            digits = (term + self._bias).to_bytes(len(self.generators) + 1, "little")
+            count = len(self.generators)
+            digits = (term + self._bias).to_bytes(BITS // 8 * count, "little")
             found = tuple(
                 (place, digit - ZERO_DIGIT)
-                for place, digit in enumerate(digits[:-1])
+                for place, digit in enumerate(struct.unpack(f"<{count}H", digits))
                 if digit != ZERO_DIGIT
             )
             self._exponents[term] = found
@@ -288,7 +298,7 @@ class Ring:
             term, k = pending.pop()
             biased = term + self._bias
             if biased < 0 or biased & self._high:
-                raise Swollen
+                raise TooHigh
             for mask, shift, square in self._squares:
                 # an exponent below zero has these bits, too
                 if biased & mask and (biased >> shift & (2**BITS - 1)) >= ZERO_DIGIT + 2:

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.joints import JOINTS
 from linegraph.model import Model
+from linegraph.register import claims_of
 from linegraph.urdf.mimics import Followers, followers_of
+from linegraph.urdf.names import ROOT
 from linegraph.urdf.report import Report, named
 from linegraph.urdf.stems import MOMENTS, OFFSETS, stems
 from linegraph.words import BodyHandle
@@ -19,9 +21,6 @@ if TYPE_CHECKING:
     from linegraph.urdf.links import Inertial, Link
     from linegraph.urdf.structure import Tree
     from linegraph.vector import Vector
-
-ROOT = "root"
-"""The free joint above the root link of a floating robot."""
 
 _AXES = ("xx", "xy", "xz", "yy", "yz", "zz")
 
@@ -99,11 +98,10 @@ def _add_followers(model: Model, tree: Tree, followers: Followers, report: Repor
 
 
 def _mention_dampers(tree: Tree, report: Report) -> None:
-    damped = sorted((joint for joint in tree.walk if joint.damped), key=lambda joint: joint.line)
-    if damped:
-        count = "it" if len(damped) == 1 else f"it and {len(damped) - 1} more"
-        text = f"damping and friction ({count}) are not part of the equations"
-        report.warn(damped[0].line, named("joint", damped[0].name), text)
+    for joint in tree.walk:
+        if joint.damped:
+            text = "damping and friction are ignored"
+            report.warn(joint.line, named("joint", joint.name), text)
 
 
 class _Folded:
@@ -135,7 +133,11 @@ class _Symbolic:
     def __init__(self, model: Model, tree: Tree) -> None:
         self._model = model
         # a coordinate and a parameter of one name would be one symbol
-        taken = {joint.name for joint in tree.walk}
+        taken = {
+            claim.name
+            for joint in tree.walk
+            for claim in claims_of(JOINTS[joint.kind](joint.name, ("", "")))
+        }
         self._links: Mapping[str, str] = stems(tree.links, MOMENTS, taken)
         self._joints: Mapping[str, str] = stems((j.name for j in tree.walk), OFFSETS, taken)
 

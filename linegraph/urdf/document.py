@@ -25,11 +25,13 @@ MOST_PREFIXES = 20
 """Most undeclared namespace prefixes that are forgiven."""
 DEEPEST = 64
 """Deepest nesting of elements; a URDF needs six levels."""
+LONGEST_TEXT = 100
+"""Characters of an element's text that are kept."""
 WIDEST = 100
 """Most attributes of an element; lxml takes time that grows with the square of their number."""
 
 # whole subtrees that say nothing about the equations of motion
-_OPAQUE = frozenset({"visual", "collision", "gazebo", "transmission", "sensor", "ros2_control"})
+_OPAQUE = frozenset({"visual", "collision", "sensor"})
 # a superset of ASCII each, so that the checks of bytes below see what the parser will see
 _ENCODINGS = frozenset(
     {"utf-8", "utf8", "us-ascii", "ascii", "iso-8859-1", "iso-8859-15", "latin1", "windows-1252"}
@@ -48,19 +50,21 @@ _UTF8 = "; save the file as UTF-8"
 
 
 class Element(NamedTuple):
-    """An XML element, without its text: a URDF says everything in attributes.
+    """An XML element.
 
     Attributes:
         tag: the name, with its prefix where it has one: ``link``, ``xacro:include``.
         line: counted from 1; of a tag over several lines, the last.
         attributes: those in a namespace as ``{namespace}name``.
         children: comments left out; empty for the parts of no interest here.
+        text: the first of what stands in it; a URDF says everything in attributes, extensions do not.
     """
 
     tag: str
     line: int
     attributes: Mapping[str, str]
     children: tuple[Element, ...]
+    text: str = ""
 
 
 def read_bytes(path: str | os.PathLike[str]) -> bytes:
@@ -235,7 +239,8 @@ def _converted(node: Any, report: Report, depth: int, parent_line: int) -> Eleme
     if tag not in _OPAQUE:
         elements = (child for child in node if isinstance(child.tag, str))
         children = tuple(_converted(child, report, depth + 1, line) for child in elements)
-    return Element(tag, line, dict(node.items()), children)
+    text = (node.text or "")[:LONGEST_TEXT].strip()
+    return Element(tag, line, dict(node.items()), children, text)
 
 
 def _tag(node: Any) -> str:

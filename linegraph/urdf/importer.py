@@ -9,6 +9,7 @@ from pathlib import PurePath
 from linegraph.model import SNAP, Model
 from linegraph.urdf.building import Options, build
 from linegraph.urdf.document import Element, parse_xml, read_bytes
+from linegraph.urdf.extensions import TOOLS, mention_extensions
 from linegraph.urdf.joints import joint_of
 from linegraph.urdf.links import link_of
 from linegraph.urdf.parts import Part, named_part
@@ -16,9 +17,7 @@ from linegraph.urdf.report import Report, shown
 from linegraph.urdf.structure import tree_of
 
 _CHILDREN = ("link", "joint")
-_IGNORED = frozenset(
-    {"material", "transmission", "gazebo", "sensor", "ros2_control", "group", "version"}
-)
+_IGNORED = frozenset({"material", "sensor", "group", "version", *TOOLS})
 _OTHERS = {
     "sdf": "an SDF file, not a URDF",
     "mujoco": "an MJCF (MuJoCo) file, not a URDF",
@@ -92,10 +91,11 @@ def parse(
     robot = Part(report, "robot", root)
     robot.check_attributes(("name",), ("version",))
     robot.check_children(_CHILDREN, _IGNORED)
+    mention_extensions(root, report)
     name = _name_of(root, source, report)
     links = [link_of(e, report, snap) for e in root.children if e.tag == "link"]
     joints = [joint_of(e, report, snap) for e in root.children if e.tag == "joint"]
-    tree = tree_of(links, joints, root.line, report)
+    tree = tree_of(links, joints, root.line, base == "floating", report)
     model = build(name, tree, Options(base == "floating", symbolic, snap), report)
     model.about = f"Derived from a URDF with SHA-256 {hashlib.sha256(text).hexdigest()}."
     model.warnings += report.warnings
@@ -121,7 +121,7 @@ def _require_urdf(root: Element, source: str, report: Report) -> None:
 def _xacro_element(element: Element) -> Element | None:
     if element.tag.startswith("xacro:"):
         return element
-    found = (_xacro_element(child) for child in element.children)
+    found = (_xacro_element(child) for child in element.children if child.tag not in TOOLS)
     return next((one for one in found if one is not None), None)
 
 

@@ -121,7 +121,8 @@ def _axis(part: Part, kind: str, snap: float) -> Vector:
     if norm == 0:
         raise axis.fail('<axis> xyz="0 0 0" has no direction; give one such as "0 0 1"')
     if abs(norm - 1) > _OFF_UNIT:
-        axis.warn(f"<axis> has length {norm:.6g}; it is scaled to 1")
+        many = "<axis> is no unit vector; it is scaled to length 1"
+        axis.warn(f"<axis> has length {norm:.6g}; it is scaled to 1", many)
     return _direction((x / norm, y / norm, z / norm), snap)
 
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, NamedTuple
 
+from linegraph.body import impossible
 from linegraph.rotation import Inertia, from_rpy, rotation_of, snapped
 from linegraph.urdf.parts import Part, named_part
 from linegraph.vector import ZERO, Vector
@@ -14,9 +14,6 @@ if TYPE_CHECKING:
     from linegraph.urdf.report import Report
 
 ENTRIES = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-PHYSICAL = 1e-6
-"""Relative to the largest principal moment: files carry about seven digits."""
-
 _CHILDREN = ("inertial", "visual", "collision")
 _IGNORED = frozenset(
     {
@@ -115,46 +112,6 @@ def _tensor(part: Part) -> Inertia:
     xx, xy, xz, yy, yz, zz = (inertia.number(entry) for entry in ENTRIES)
     problem = impossible((xx, xy, xz, yy, yz, zz))
     if problem:
-        inertia.warn(f"no body has this inertia: {problem}")
+        many = "no body has this inertia: a principal moment is negative or exceeds the sum of the others"
+        inertia.warn(f"no body has this inertia: {problem}", many)
     return (xx, xy, xz, yy, yz, zz)
-
-
-def impossible(tensor: Inertia) -> str:
-    """Why no distribution of mass has this inertia tensor; empty where one has.
-
-    Principal moments are never negative, and none exceeds the sum of the other two.
-
-    Example:
-        >>> impossible((1.0, 0, 0, 1.0, 0, 3.0))
-        'principal moments 1, 1, 3 kg m^2: the largest exceeds the sum of the others'
-    """
-    low, middle, high = principal_moments(tensor)
-    largest = max(abs(low), abs(high))
-    margin = PHYSICAL * largest
-    # moments that are zero up to rounding are shown as zero
-    shown = (0.0 if abs(moment) < 1e-12 * largest else moment for moment in (low, middle, high))
-    said = f"principal moments {', '.join(f'{moment:.6g}' for moment in shown)} kg m^2"
-    if low < -margin:
-        return f"{said}: none can be negative"
-    if high > low + middle + margin:
-        return f"{said}: the largest exceeds the sum of the others"
-    return ""
-
-
-def principal_moments(tensor: Inertia) -> tuple[float, float, float]:
-    """The eigenvalues of a symmetric tensor, rising: roots of its cubic by the cosine formula."""
-    scale = max(abs(entry) for entry in tensor)
-    if scale == 0:
-        return (0.0, 0.0, 0.0)
-    xx, xy, xz, yy, yz, zz = (entry / scale for entry in tensor)
-    mean = (xx + yy + zz) / 3
-    a, b, c = xx - mean, yy - mean, zz - mean
-    spread = math.sqrt((a * a + b * b + c * c + 2 * (xy * xy + xz * xz + yz * yz)) / 6)
-    if spread == 0:
-        return (mean * scale,) * 3
-    determinant = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz)
-    cosine = max(-1.0, min(1.0, determinant / (2 * spread**3)))
-    angle = math.acos(cosine) / 3
-    high = mean + 2 * spread * math.cos(angle)
-    low = mean + 2 * spread * math.cos(angle + 2 * math.pi / 3)
-    return (low * scale, (3 * mean - high - low) * scale, high * scale)

@@ -43,7 +43,8 @@ def followers_of(joints: Sequence[Joint], report: Report) -> Followers:
         text = (
             f'<mimic> follows "{shown(mimic.master)}", which cannot move: welded at {still[name]:g}'
         )
-        report.warn(mimic.line, named("joint", name), text)
+        many = "<mimic> follows a joint that cannot move: welded where that leaves it"
+        report.warn(mimic.line, named("joint", name), text, many)
     moving = {name: mimic for name, mimic in mimics.items() if name not in still}
     return Followers(moving, {name: still[name] for name in mimics if name in still})
 

@@ -6,7 +6,7 @@ import math
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
-from linegraph.urdf.report import Report, named, nearest, shown
+from linegraph.urdf.report import CLOSE, IGNORED, Report, mechanical, named, nearest, shown
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -43,9 +43,9 @@ class Part(NamedTuple):
         """The error that says this about the element; the caller raises it."""
         return self.report.error(self.element.line, self.thing, problem)
 
-    def warn(self, text: str) -> None:
-        """Note something about the element."""
-        self.report.warn(self.element.line, self.thing, text)
+    def warn(self, text: str, sort: str = "") -> None:
+        """Note something about the element; `sort` is as of `Report.warn`."""
+        self.report.warn(self.element.line, self.thing, text, sort)
 
     def child(self, tag: str) -> Part | None:
         """The child of this tag, if there is one.
@@ -137,7 +137,11 @@ class Part(NamedTuple):
             if tag in known or tag in ignored or ":" in tag or tag in said:
                 continue
             said.add(tag)
-            text = f"<{shown(tag)}> is not known and ignored{nearest(tag, known)}"
+            hint = nearest(tag, known, CLOSE)
+            text = f"<{shown(tag)}> is not known and ignored{hint}"
+            if not hint and mechanical(tag):
+                self.report.dropped.append((child.line, tag))
+                text = f"<{shown(tag)}> is not known and {IGNORED}"
             self.report.warn(child.line, self.thing, text)
 
     def check_attributes(self, known: Sequence[str], ignored: Collection[str] = ()) -> None:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
-from linegraph.body import GROUND, MASS_CENTER
+from linegraph.body import MASS_CENTER
 from linegraph.urdf.joints import Joint
 from linegraph.urdf.links import Link
+from linegraph.urdf.names import renamed
 from linegraph.urdf.report import Report, named, nearest, shown
 
 if TYPE_CHECKING:
@@ -32,13 +33,16 @@ class Tree(NamedTuple):
     walk: tuple[Joint, ...]
 
 
-def tree_of(links: Sequence[Link], joints: Sequence[Joint], line: int, report: Report) -> Tree:
+def tree_of(
+    links: Sequence[Link], joints: Sequence[Joint], line: int, floating: bool, report: Report
+) -> Tree:
     """Connect links by joints.
 
     Args:
         links: in the order of the file.
         joints: in the order of the file.
         line: of the robot, for what no single element is to blame for.
+        floating: whether a free joint is above the root link.
         report: places the errors.
 
     Raises:
@@ -48,7 +52,7 @@ def tree_of(links: Sequence[Link], joints: Sequence[Joint], line: int, report: R
         raise report.error(line, "robot", "has no links")
     _require_unique("link", links, report)
     _require_unique("joint", joints, report)
-    links, joints = _clear_of_ground(links, joints, report)
+    links, joints = renamed(links, joints, floating, report)
     by_name = {link.name: link for link in links}
     carriers = _carriers(by_name, joints, report)
     roots = [link for link in links if link.name not in carriers]
@@ -62,28 +66,6 @@ def tree_of(links: Sequence[Link], joints: Sequence[Joint], line: int, report: R
     _check_vertices(links, joints, report)
     _check_edges(links, joints, report)
     return Tree(roots[0], by_name, walk)
-
-
-def _clear_of_ground(
-    links: Sequence[Link], joints: Sequence[Joint], report: Report
-) -> tuple[Sequence[Link], Sequence[Joint]]:
-    """Rename a link that has the name of the inertial frame."""
-    names = {link.name: link for link in links}
-    if GROUND not in names:
-        return links, joints
-    other = f"{GROUND}_link"
-    while other in names:
-        other += "_"
-    text = f'"{GROUND}" is the inertial frame; the link becomes the body "{other}"'
-    report.warn(names[GROUND].line, named("link", GROUND), text)
-
-    def renamed(name: str) -> str:
-        return other if name == GROUND else name
-
-    return (
-        [link._replace(name=renamed(link.name)) for link in links],
-        [j._replace(parent=renamed(j.parent), child=renamed(j.child)) for j in joints],
-    )
 
 
 def _require_unique(kind: str, found: Sequence[Named], report: Report) -> None:
@@ -128,6 +110,9 @@ def _several_roots(roots: Sequence[Link], report: Report) -> SourceError:
         f"no joint carries {', '.join(listed)}{more}: {len(roots)} roots; "
         "a URDF is one tree with one root, connect them by joints"
     )
+    if report.dropped:
+        listed = [f"<{shown(tag)}> (line {line})" for line, tag in report.dropped[:_LISTED]]
+        problem += f"; what may connect them is not read: {', '.join(listed)}"
     return report.error(roots[1].line, named("link", roots[1].name), problem)
 
 

@@ -1,0 +1,175 @@
+"""What the functions of emitted C keep on the stack and whom they call: records made as they are written.
+
+Functions that are printed from programs keep their record while their lines are made. Those of templates,
+helpers and algorithms, have it here: a variable or a call added to a template is added here, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+from linegraph.functions import ARITY
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from linegraph.program import Routine
+
+MANY = 100
+"""Statements of a function of templates: more than what is held in registers depends on."""
+
+
+@dataclass
+class Frame:
+    """A function's variables by type, and the functions that it calls, by their names after the module's.
+
+    Attributes:
+        doubles: real numbers, whether they are doubles or floats.
+        registers: vectors of real numbers or of bits.
+        parameters: how many arguments it takes.
+        statements: about how many.
+        named: those of the variables that are intermediate results with a name.
+        wide: whether it works on registers.
+    """
+
+    doubles: int = 0
+    ints: int = 0
+    pointers: int = 0
+    registers: int = 0
+    parameters: int = 0
+    statements: int = MANY
+    named: int = 0
+    wide: bool = False
+    calls: set[str] = field(default_factory=set)
+
+    def add(self, number: str, count: int = 1) -> None:
+        """Note variables: of the type ``double`` or of registers."""
+        if number == "double":
+            self.doubles += count
+        else:
+            self.registers += count
+
+    def name(self, number: str) -> None:
+        """Note an intermediate result with a name."""
+        self.add(number)
+        self.named += 1
+
+
+class Definition(NamedTuple):
+    """A function: its name after that of the module, its head, the lines between its braces, its record."""
+
+    name: str
+    head: str
+    lines: list[str]
+    frame: Frame
+
+
+class Counts(dict[str, int]):
+    """The counts of a module; those that it lacks are 0."""
+
+    def __missing__(self, name: str) -> int:
+        return 0
+
+
+FUNCTIONS = {
+    "finite": ("not_finite", "parameters_not_finite", "copy"),
+    "eliminate": ("eliminate",),
+    "large": ("too_large",),
+    "norm": ("size_of",),
+    "rounding": ("is_rounding",),
+    "constrained": ("constrained",),
+    "determined": ("determined",),
+    "unit": ("unit",),
+}
+"""The functions of each helper that algorithms call."""
+
+
+def of_helpers(counts: Mapping[str, int]) -> dict[str, Frame]:
+    """The functions of all helpers."""
+    n, c = counts["NV"], counts["NC"]
+    within = {"eliminate", "too_large"}
+    found = {
+        "not_finite": Frame(ints=2, parameters=2),
+        "parameters_not_finite": Frame(ints=1, parameters=1),
+        "copy": Frame(ints=1, parameters=3),
+        "too_large": Frame(ints=2, parameters=2),
+        "eliminate": Frame(doubles=4, ints=15, pointers=2, parameters=7),
+        "size_of": Frame(doubles=2, ints=1, parameters=2),
+        "is_rounding": Frame(ints=2, parameters=3),
+        "least_norm": Frame(doubles=4 + c * c, ints=12, pointers=1, parameters=6),
+        "constrained": Frame(
+            doubles=8 + (4 + c) * n + 2 * n * n + 2 * c,
+            ints=37 + n + c,
+            parameters=11,
+            calls={*within, "least_norm"},
+        ),
+        "determined": Frame(
+            doubles=(c + n) * n + 2 * n, ints=10 + c + 2 * n, parameters=6, calls=within
+        ),
+        "unit": Frame(doubles=1, ints=1, pointers=1, parameters=1),
+        "sincos": Frame(doubles=13, ints=1, parameters=3),
+        "all_sincos": Frame(ints=1, parameters=4, wide=True, calls={"sincos", "lanes_sincos"}),
+        "lanes_sincos": Frame(registers=17, ints=3, parameters=4, wide=True),
+        "turn": Frame(registers=4, ints=1, parameters=1, wide=True),
+        **dict.fromkeys(("gather", "scatter"), _rows()),
+    }
+    found |= {f"{name}_of": Frame(parameters=2) for name in ("sign", "min", "max")}
+    return found | {
+        f"lanes_{name}": Frame(ints=1, parameters=2, wide=True, calls={f"{name}_of"})
+        for name in ARITY
+    }
+
+
+def _rows() -> Frame:
+    return Frame(registers=8, ints=3, parameters=4, wide=True, calls={"turn"})
+
+
+Made = Callable[[Counts, "dict[str, object]"], Frame]
+
+_ROUTINES: dict[str, Made] = {
+    "after_dynamics": lambda n, _: Frame(doubles=n["NV"] + 1 + n["NC"], ints=1),
+    "rhs": lambda n, _: Frame(doubles=n["NC"]),
+    "constrained_dynamics": lambda n, _: Frame(
+        doubles=n["NV"] * (n["NV"] + n["NC"] + 2) + 2 * n["NC"], ints=3
+    ),
+    "reduction": lambda n, _: Frame(
+        doubles=n["NC"] * (n["NV"] + 1) + (n["NV"] + n["NC"] + n["NI"]) * (n["NI"] + 1), ints=4
+    ),
+    "reduced_equations": lambda n, _: Frame(doubles=1 + n["NV"] * (n["NV"] + n["NI"] + 2), ints=9),
+    "complete": lambda n, _: Frame(
+        doubles=3 + 2 * n["NQ"] + n["NV"] * (n["NC"] + 2) + 2 * n["NC"] + n["NI"] + n["NP"],
+        ints=10,
+    ),
+    "project": lambda n, _: Frame(
+        doubles=4 + 3 * n["NQ"] + n["NV"] * (n["NV"] + n["NC"] + 2) + 2 * n["NC"] + n["NP"],
+        ints=10,
+    ),
+    "linearization": lambda n, details: _of_linearization(n, len(details["d_at"])),  # type: ignore[arg-type]
+    "newton": lambda _, details: _of_newton(int(details["size"])),  # type: ignore[call-overload]
+}
+"""The algorithms of templates, their arguments and calls left out."""
+
+
+def of_routine(routine: Routine, counts: Mapping[str, int], helpers: Iterable[str]) -> Frame:
+    """The record of a function that an algorithm of a template is written for."""
+    frame = _ROUTINES[routine.algorithm](Counts(counts), dict(routine.details))
+    frame.parameters = len(routine.arguments) + len(routine.results)
+    frame.calls = {*routine.uses, *(x for helper in helpers for x in FUNCTIONS[helper])}
+    return frame
+
+
+def _of_linearization(n: Counts, free: int) -> Frame:
+    v, c, i, t = n["NV"], n["NC"], n["NI"], n["NT"]
+    width, sides = t + v + n["NU"], n["NDX"] + n["NU"]
+    vectors = 3 * v + 2 * c + width + 2 * v + c
+    matrices = v * v + c * v + (v + c) * width + c * t + t * t + v * i
+    return Frame(
+        doubles=1 + vectors + matrices + (v + c + free) * free + (v + c + i) * free + i * sides,
+        ints=21,
+    )
+
+
+def _of_newton(size: int) -> Frame:
+    return Frame(doubles=3 + size * size + 6 * size, ints=13 + 2 * size)
