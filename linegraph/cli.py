@@ -56,7 +56,7 @@ def main() -> None:
       linegraph derive crane.toml --output crane.html
 
     Exit status: 0 done; 1 a check has failed; 2 the model or the call is wrong, nothing written;
-    74 what is written to failed (a full disk, a device); 130 interrupted.
+    74 the output could not be written (a full disk, a device); 130 interrupted; 70 an error of linegraph.
     """
 
 
@@ -121,6 +121,9 @@ def emit(
       power              the audit of through times across
     and for each --frame
       frame_NAME_pose, frame_NAME_velocity, frame_NAME_jacobian, frame_NAME_jacobian_dot_v
+
+    Where joints move no inertia, as in URDFs without masses, M is singular: functions that divide by it are
+    left out with one warning, and refused if asked for by name.
     """
     with explained():
         from linegraph.emission import emit as write

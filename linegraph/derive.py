@@ -277,8 +277,8 @@ def derive(model: Model) -> Derivation:
         require_own(model, owners, model.places)
         formulation = formulate(model, graph)
         derivation = Derivation(model, graph, formulation)
-        _ = derivation.symbol_names
         require_motion(model, derivation.structure)
+        _ = derivation.symbol_names
         if derivation.structure.closed and derivation.valued:
             derivation.require_relations()
         _ = derivation.idle
