@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 NO_SOLUTION = Status(
     900,
-    "the algebraic loop of the network has no solution here, or none was found",
+    "the algebraic loop of the network has no solution here, has several, or none was found",
     "NO_LOOP_SOLUTION",
 )
 SINGULAR = Status(
