@@ -79,6 +79,7 @@ FUNCTIONS = {
     "large": ("too_large",),
     "norm": ("size_of",),
     "rounding": ("is_rounding",),
+    "backward": ("backward",),
     "constrained": ("constrained",),
     "determined": ("determined",),
     "unit": ("unit",),
@@ -98,6 +99,7 @@ def of_helpers(counts: Mapping[str, int]) -> dict[str, Frame]:
         "eliminate": Frame(doubles=4, ints=15, pointers=2, parameters=7),
         "size_of": Frame(doubles=2, ints=1, parameters=2),
         "is_rounding": Frame(ints=2, parameters=3),
+        "backward": Frame(ints=4, parameters=7),
         "least_norm": Frame(doubles=4 + c * c, ints=12, pointers=1, parameters=6),
         "constrained": Frame(
             doubles=8 + (4 + c) * n + 2 * n * n + 2 * c,
@@ -172,4 +174,4 @@ def _of_linearization(n: Counts, free: int) -> Frame:
 
 
 def _of_newton(size: int) -> Frame:
-    return Frame(doubles=3 + size * size + 6 * size, ints=13 + 2 * size)
+    return Frame(doubles=7 + size * size + 6 * size, ints=24 + 2 * size)

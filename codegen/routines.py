@@ -36,7 +36,7 @@ HELPERS = {
     "linearization": ("eliminate", "pure", "large", "largest", "constrained", "determined"),
     "after_dynamics": (),
     "rhs": (),
-    "newton": ("eliminate", "norm", "rounding"),
+    "newton": ("eliminate", "norm", "rounding", "backward"),
 }
 """The algorithms, and what they share."""
 

@@ -214,9 +214,16 @@ class Sizes:
         6.0
     """
 
-    def __init__(self, calculus: Calculus) -> None:
-        """Nothing is known yet."""
+    def __init__(self, calculus: Calculus, unknowns: Collection[str] | None = None) -> None:
+        """Nothing is known yet.
+
+        Args:
+            calculus: of the DAG.
+            unknowns: the arguments whose symbols vary; what depends on none of them is one term, the same
+                number at every evaluation. All symbols vary if left out.
+        """
         self._calculus, self._dag = calculus, calculus.dag
+        self._unknowns = unknowns
         self._known: dict[int, Scalar] = {}
 
     def __call__(self, x: Scalar) -> Scalar:
@@ -228,7 +235,7 @@ class Sizes:
         return self._known[x.index]
 
     def _of(self, node: Node) -> Scalar:
-        if node.op == SYMBOL:
+        if node.op == SYMBOL or self._given(node):
             return self._dag.function("abs", node)
         a, b = (self._operand(part) for part in (node.a, node.b))
         if node.op == NEG:
@@ -244,6 +251,12 @@ class Sizes:
         return (
             self._dag.function("abs", node)
             + self._dag.function("abs", self._calculus.slope(node)) * a
+        )
+
+    def _given(self, node: Node) -> bool:
+        """Whether a node is the same number at every evaluation."""
+        return self._unknowns is not None and not any(
+            symbol[0] in self._unknowns for symbol in self._calculus.support(node)
         )
 
     def _operand(self, x: Any) -> Scalar:

@@ -19,7 +19,7 @@ from linegraph.errors import ModelError
 from linegraph.formula import variable_of
 from linegraph.network.network import RATE, SHAFT_RATE
 from linegraph.network.newton import solved
-from linegraph.network.static import LOOP
+from linegraph.network.static import EASE, LOOP
 from linegraph.residues import CONSTANT
 
 if TYPE_CHECKING:
@@ -158,8 +158,13 @@ class Exchange:
         """What the network's stores hold."""
         total: Scalar = 0
         for name, stored in self.network.energy.items():
-            if name in self.network.powerful:
+            if name not in self.network.powerful:
+                continue
+            try:
                 total = total + self._moving(stored)
+            except ModelError as error:
+                kind = next(b.component.kind for b in self.network.branches if b.component.name == name)
+                raise ModelError(f'{kind} "{name}"', f"its energy: {error.problem}") from None
         return total
 
     def variables(self) -> dict[str, Scalar]:
@@ -184,7 +189,8 @@ class Exchange:
             return self.v[self.first + self.network.places[symbol]]
         if kind in (RATE, SHAFT_RATE):
             if acceleration is None:
-                raise ModelError("", "it depends on rates that are not known here")
+                problem = "depends on rates, which are known only once the equations are solved"
+                raise ModelError("", problem)
             return self._rate(kind, place, acceleration)
         if kind == "x":
             return self.motion_of(place).x
@@ -200,6 +206,8 @@ class Exchange:
             return self.tree.layout.input_rates[(kind, place)]
         if kind == LOOP:
             return self._loop(place)
+        if kind == EASE:
+            return self.algebra.symbol(kind, place)
         if place not in self.names:
             raise ModelError("", f"{place} is not known here")
         return self.names[place]

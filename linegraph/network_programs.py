@@ -30,8 +30,8 @@ def algebraic_loop(f: Functions) -> tuple[Program | Routine, ...]:
         return ()
     network = f.exchange.network
     f.dag.label = "network, algebraic loop"
-    residual = tuple(f.exchange.still(r) for r in network.loop)
-    slopes = tuple(f.exchange.still(e) for row in network.loop_jacobian for e in row)
+    residual = tuple(f.exchange.still(r) for r in network.eased)
+    slopes = tuple(f.exchange.still(e) for row in network.eased_jacobian for e in row)
     terms = tuple(f.exchange.still(e) for e in network.loop_sizes)
     size = len(residual)
     results = (
@@ -41,14 +41,15 @@ def algebraic_loop(f: Functions) -> tuple[Program | Routine, ...]:
     )
     equations = f.program(
         "loop_equations",
-        "Equations of the network's algebraic loop, for given unknowns.",
-        loop_arguments(f),
+        "Equations of the network's algebraic loop, for given unknowns and with resistances at its laws.",
+        (*loop_arguments(f), "ease"),
         results,
     )
-    given = tuple(a for a in equations.arguments if a.name != "loop")
+    given = tuple(a for a in equations.arguments if a.name not in ("loop", "ease"))
     solver = Routine(
         LOOP_FUNCTION,
-        "Solve the network's algebraic loop by Newton's method with halved steps, from 0, else from 1 or -1.",
+        "Solve the network's algebraic loop by Newton's method with halved steps; where that fails, with "
+        "resistances at its laws that vanish step by step.",
         given,
         (Result("loop", (size,), (), "unknowns of the algebraic loop"),),
         "newton",
@@ -73,7 +74,7 @@ def loop_arguments(f: Functions) -> tuple[str, ...]:
     """What the algebraic loop depends on: always the state, inputs where they are in it."""
     assert f.exchange is not None
     network = f.exchange.network
-    rows = (*network.loop, *(e for row in network.loop_jacobian for e in row))
+    rows = (*network.eased, *(e for row in network.eased_jacobian for e in row))
     results = (Result("r", (), tuple(f.exchange.still(r) for r in rows), ""),)
     return ("q", "v", "u", "loop") if reads("u", results) else ("q", "v", "loop")
 

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from linegraph.tips import NamedFrame
     from linegraph.vector import Scalar
 
-ORDER = ("q", "v", "u", "a", "lam", "loop")
+ORDER = ("q", "v", "u", "a", "lam", "loop", "ease")
 """The order of a function's arguments, after parameters and time."""
 
 ARGUMENTS = {
@@ -53,6 +53,7 @@ ARGUMENTS = {
     "u": "inputs",
     "lam": "multipliers of the constraints",
     "loop": "unknowns of the algebraic loop",
+    "ease": "resistance in series and conductance in parallel at each law of the loop; 0 at its solution",
 }
 
 
@@ -100,6 +101,7 @@ class Functions:
             "u": len(self.tree.inputs),
             "lam": len(self.equations),
             "loop": len(self.tree.network.loop) if self.tree.network else 0,
+            "ease": 2,
         }
         self.texts = ARGUMENTS
         self.q = self.symbols("q")

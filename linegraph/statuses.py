@@ -10,7 +10,7 @@ from linegraph.program import Status
 
 NO_LOOP_SOLUTION = Status(
     900,
-    "the algebraic loop of the network has no solution here, or none was found",
+    "the algebraic loop of the network has no solution here, has several, or none was found",
     "NO_LOOP_SOLUTION",
 )
 SINGULAR_NETWORK = Status(

@@ -19,7 +19,7 @@ from linegraph.network.network import RATE, SHAFT_RATE, Network, State
 from linegraph.network.rates import Rates
 from linegraph.network.reduction import Reduction
 from linegraph.network.selection import select
-from linegraph.network.static import DUAL, Solver, substituting
+from linegraph.network.static import DUAL, Solver, pruned, substituting
 from linegraph.program import Quantity
 from linegraph.residues import Residues
 
@@ -91,7 +91,7 @@ class _Derivation:
         self._states = self._listed()
         self._rates = Rates(self._first, self._calculus, self._states, selection.dependent)
         self._place = self._rates.places
-        self._put = substituting(laws, statics.kirchhoff, statics.values)
+        self._valued = substituting(laws, statics.kirchhoff, statics.values)
 
     def network(self) -> Network:
         """All of it."""
@@ -146,6 +146,7 @@ class _Derivation:
             put(self._laws.heat),
             frozenset(n for n in {*self._model.domains, *DOMAINS} if not self._domain(n).power),
             tuple(self._called(symbol) for symbol in self._statics.loop),
+            tuple(later.all(self._statics.eased)),
         )
         self._require_order(found)
         return found
@@ -161,6 +162,17 @@ class _Derivation:
             if branch.name in self._selection.dependent:
                 return f'{branch.component.kind} "{branch.component.name}"'
         return self._who
+
+    def _put(self, x: Scalar) -> Scalar:
+        """A scalar by states, inputs and what only rates determine, where it does depend on that.
+
+        Kirchhoff's laws add what rates determine and subtract it again: what a dependent store keeps does
+        not depend on rates, though every edge of its circuit may.
+        """
+        return self._pruned(self._valued(x))
+
+    def _pruned(self, x: Scalar) -> Scalar:
+        return pruned(x, self._calculus, self._residues, lambda symbol: symbol[0] == DUAL)
 
     # -- states and their rates
 
@@ -288,11 +300,30 @@ class _Derivation:
         return {name: found[name] for name in declared if name in found}
 
     def _require_order(self, network: Network) -> None:
-        """Refuse laws of three derivatives."""
-        for x in (*network.force, *network.mass.values()):
-            for kind, place in self._calculus.support(x):
+        """Refuse laws of three derivatives, and rates that are not in proportion to what they enter."""
+        entries = [(i, x) for i, x in enumerate(network.force)]
+        entries += [(i, x) for (i, _), x in network.mass.items()]
+        for row, x in entries:
+            for kind, place in self._calculus.support(self._pruned(x)):
                 if kind == DUAL:
                     raise self._rates.too_deep(kind, place)
+                if kind in (RATE, SHAFT_RATE):
+                    raise self._curved(network, row)
+
+    def _curved(self, network: Network, row: int) -> ModelError:
+        """What to tell where a law is not linear in a rate."""
+        count = len(network.states)
+        if row < count:
+            component = network.owner(network.states[row]).name
+        else:
+            component = network.ports[row - count].component.name
+        on = ", ".join(self._selection.dependent) or component
+        problem = (
+            f"a law is not linear in what flows in {on}, which depends on rates, and its own rate depends on "
+            "that law; put a small resistance or store between them"
+        )
+        kind = next(c.kind for c in self._model.components if c.name == component)
+        return ModelError(f'{kind} "{component}"', problem)
 
     def _remarks(self, rates: Mapping[str, int]) -> tuple[str, ...]:
         found = []
@@ -304,6 +335,8 @@ class _Derivation:
         for edge, on in self._selection.dependent.items():
             what = f"follows from {', '.join(on)}" if on else "is given by sources"
             found.append(f"{edge} stores, but is no state of its own: it {what}")
+        for store, names in self._laws.driven.items():
+            found.append(f"{' and '.join(names)} change what {store} stores, and do work on it")
         for name, order in rates.items():
             more = f" and {name}_acceleration" * (order > 1)
             found.append(

@@ -21,6 +21,7 @@ from linegraph.domains import DOMAINS
 from linegraph.errors import ModelError
 from linegraph.expression import Dag, Node
 from linegraph.formula import variable_of
+from linegraph.network.stored import changing
 from linegraph.parameters import names_in, resolver, valued
 from linegraph.program import Quantity
 from linegraph.residues import CONSTANT
@@ -62,10 +63,11 @@ class Store:
 
 @dataclass(frozen=True)
 class Static:
-    """A law without a rate: what is zero."""
+    """A law without a rate: what is zero, and the edge whose port it is the law of."""
 
     component: Component
     zero: Scalar
+    edge: str = ""
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,7 @@ class Laws:
         energy: stored by each component; in powers of what is kept only where a co-energy is known.
         heat: the power each component dissipates.
         charged: components whose charges are given as such, and no energy.
+        driven: stores whose value the time or inputs change, and the names of these.
     """
 
     dag: Dag
@@ -96,6 +99,7 @@ class Laws:
     energy: dict[str, Scalar] = field(default_factory=dict)
     heat: dict[str, Scalar] = field(default_factory=dict)
     charged: set[str] = field(default_factory=set)
+    driven: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 def laws_of(model: Model, branches: Sequence[Branch], projections: Sequence[Projection]) -> Laws:
@@ -154,6 +158,10 @@ def _evaluate(component: Component, at: At, laws: Laws) -> None:
     zeros = component.laws(at)
     if charges is not None:
         laws.charged.add(component.name)
+    own_energy = component.own_energy(at)
+    driven = changing(component, at.branches, calculus, (work, own_energy, *(charges or ())))
+    if driven:
+        laws.driven[component.name] = driven
     pushed = calculus.derivative(work, key_of(at.x)) if component.displaced else 0
     kept_keys = {
         key_of((at.X, at.Y)[b.kept != ACROSS][k]) for k, b in enumerate(at.branches) if b.kept
@@ -163,7 +171,7 @@ def _evaluate(component: Component, at: At, laws: Laws) -> None:
     for k, branch in enumerate(at.branches):
         zero = zeros[k] + pushed if _mechanical(component, k) else zeros[k]
         if branch.kept == STATIC:
-            laws.statics.append(Static(component, zero))
+            laws.statics.append(Static(component, zero, branch.name))
             continue
         kept, other = (at.X, at.Y) if branch.kept == ACROSS else (at.Y, at.X)
         charge = calculus.derivative(work, key_of(kept[k])) if charges is None else charges[k]
@@ -185,7 +193,7 @@ def _evaluate(component: Component, at: At, laws: Laws) -> None:
         laws.own.append(Own(key_of(at.x), quantity, at.X[-1]))
     # of charges in proportion to what is kept energy and co-energy are the same
     energy = work if quadratic or charges is not None else stored - work
-    laws.energy[component.name] = component.own_energy(at) + energy
+    laws.energy[component.name] = own_energy + energy
     laws.heat[component.name] = component.dissipation(at)
 
 

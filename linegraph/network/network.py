@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from linegraph.differentiation import Sizes, substitution
 from linegraph.errors import ModelError
-from linegraph.network.static import LOOP
+from linegraph.network.static import EASE, LOOP
 from linegraph.residues import CONSTANT, Residues
 
 if TYPE_CHECKING:
@@ -54,6 +54,8 @@ class Network:
         energy, heat: what each component stores and dissipates.
         heats: subspaces whose through times across is no power.
         loop_names: what the unknowns of the algebraic loop are called.
+        eased: what is zero in the loop with resistances at its laws, the symbols `EASE`: Newton's method
+            lets these vanish where it does not succeed without.
     """
 
     laws: Laws
@@ -72,6 +74,7 @@ class Network:
     heat: dict[str, Scalar] = field(default_factory=dict)
     heats: frozenset[str] = frozenset()
     loop_names: tuple[str, ...] = ()
+    eased: tuple[Scalar, ...] = ()
 
     @property
     def dag(self) -> Dag:
@@ -114,16 +117,26 @@ class Network:
         return [[self.laws.calculus.derivative(r, (LOOP, k)) for k in size] for r in self.loop]
 
     @cached_property
+    def eased_jacobian(self) -> list[list[Scalar]]:
+        """The same of the loop with resistances at its laws."""
+        size = range(len(self.loop))
+        return [[self.laws.calculus.derivative(r, (LOOP, k)) for k in size] for r in self.eased]
+
+    @cached_property
     def loop_needs(self) -> frozenset[Symbol]:
         """The symbols that the algebraic loop depends on beside its unknowns."""
-        slopes = (slope for row in self.loop_jacobian for slope in row)
-        supports = (self.laws.calculus.support(x) for x in (*self.loop, *slopes, *self.loop_sizes))
-        return frozenset(s for support in supports for s in support if s[0] != LOOP)
+        slopes = (slope for row in self.eased_jacobian for slope in row)
+        supports = (self.laws.calculus.support(x) for x in (*self.eased, *slopes, *self.loop_sizes))
+        return frozenset(s for support in supports for s in support if s[0] not in (LOOP, EASE))
 
     @cached_property
     def loop_sizes(self) -> list[Scalar]:
-        """The size of the terms of what is zero there: at a solution it is zero but for their rounding."""
-        return [Sizes(self.laws.calculus)(r) for r in self.loop]
+        """The size of the terms of what is zero there: at a solution it is zero but for their rounding.
+
+        What does not depend on the unknowns is a number while they are searched: its size is its own, however
+        steeply it depends on the time or an input.
+        """
+        return [Sizes(self.laws.calculus, (LOOP,))(r) for r in self.loop]
 
     @cached_property
     def variable_sizes(self) -> dict[str, tuple[Scalar, Scalar]]:

@@ -15,16 +15,17 @@ from linegraph.network.kirchhoff import Kirchhoff
 from linegraph.residues import Residues
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
-    from linegraph.differentiation import Symbol
+    from linegraph.differentiation import Calculus, Symbol
     from linegraph.network.edges import Branch
     from linegraph.network.laws import Laws, Static
     from linegraph.network.selection import Selection
     from linegraph.vector import Scalar
 
-DUAL, LOOP = "d", "loop"
-"""Symbols of variables that only rates determine, and of the unknowns of algebraic loops."""
+DUAL, LOOP, EASE = "d", "loop", "ease"
+"""Symbols of variables that only rates determine, of the unknowns of algebraic loops, and of the resistance in
+series and the conductance in parallel that make a loop easier to solve; both are zero at its solution."""
 
 
 @dataclass
@@ -37,6 +38,7 @@ class Statics:
         residuals: what is zero there.
         laws: the components whose laws make the loop.
         pivots: what was divided by and might be zero.
+        eased: the residuals, with resistances at the ports of their laws.
     """
 
     kirchhoff: Kirchhoff
@@ -45,6 +47,7 @@ class Statics:
     residuals: list[Scalar] = field(default_factory=list)
     laws: list[str] = field(default_factory=list)
     pivots: list[Scalar] = field(default_factory=list)
+    eased: list[Scalar] = field(default_factory=list)
 
 
 class Solver:
@@ -85,13 +88,12 @@ class Solver:
 
     def _pruned(self, value: Scalar) -> Scalar:
         """A value without the unknowns that cancel in it: elimination adds and subtracts them."""
-        dead = {
-            symbol: 0
-            for symbol in self._calculus.support(value)
-            if (symbol[0] == DUAL or (self._kirchhoff.knows(symbol) and symbol not in self._known))
-            and not self._residues(self._calculus.derivative(value, symbol))
-        }
-        return substitution(self._dag, dead)(value) if dead else value
+        return pruned(
+            value,
+            self._calculus,
+            self._residues,
+            lambda s: s[0] == DUAL or (self._kirchhoff.knows(s) and s not in self._known),
+        )
 
     def _state_rows(self) -> list[Row]:
         """A state that is no primary variable of the tree still is what Kirchhoff's laws say."""
@@ -157,7 +159,7 @@ class Solver:
     ) -> Statics:
         """Solve what gives one variable at a time, before the loop and after it."""
         put = self.substituting(values)
-        open_laws = [(static.component.name, put(static.zero)) for static in laws]
+        open_laws = [(static, put(static.zero)) for static in laws]
         unknown = dict.fromkeys(free)
         while True:
             step = self._forward(open_laws, unknown)
@@ -168,7 +170,7 @@ class Solver:
             del unknown[symbol]
             replace = substitution(self._dag, {symbol: value})
             values = {s: replace(v) for s, v in values.items()} | {symbol: value}
-            open_laws = [(name, replace(zero)) for name, zero in open_laws]
+            open_laws = [(static, replace(zero)) for static, zero in open_laws]
         later = []
         while True:
             back = self._backward(open_laws, unknown)
@@ -185,11 +187,50 @@ class Solver:
             renamed[symbol] = substitution(self._dag, renamed)(value)
         replace = substitution(self._dag, renamed)
         values = {s: replace(v) for s, v in values.items()} | renamed
-        names = list(dict.fromkeys(name for name, _ in open_laws))
-        return Statics(self._kirchhoff, values, loop, residuals, names, self._pivots)
+        names = list(dict.fromkeys(static.component.name for static, _ in open_laws))
+        return Statics(
+            self._kirchhoff,
+            values,
+            loop,
+            residuals,
+            names,
+            self._pivots,
+            self._eased([static for static, _ in open_laws], residuals, values),
+        )
+
+    def _eased(
+        self, laws: Sequence[Static], residuals: Sequence[Scalar], values: dict[Symbol, Scalar]
+    ) -> list[Scalar]:
+        """What is zero in the loop if the ports of its laws have the resistances of `EASE`.
+
+        A port gets a resistance in series and a conductance in parallel, or one of the two where the other
+        would make the loop depend on more than it does.
+        """
+        needed = {s for r in residuals for s in self._calculus.support(r)}
+        put = self.substituting(values)
+        found = []
+        for static, residual in zip(laws, residuals, strict=True):
+            kept = residual
+            for series, parallel in ((1, 1), (0, 1), (1, 0)):
+                eased = put(self._in_resistances(static, series, parallel))
+                support = self._calculus.support(eased)
+                if all(s in needed or s[0] in (LOOP, EASE) for s in support):
+                    kept = eased
+                    break
+            found.append(kept)
+        return found
+
+    def _in_resistances(self, static: Static, series: int, parallel: int) -> Scalar:
+        """A law behind a resistance and beside a conductance; laws that rise still do, and more steeply."""
+        dag = self._dag
+        x, y = dag.symbol("X", static.edge), dag.symbol("Y", static.edge)
+        inner_x = x - series * (dag.symbol(EASE, 0) * y)
+        inner_y = y - parallel * (dag.symbol(EASE, 1) * x)
+        inner = {("X", static.edge): inner_x, ("Y", static.edge): inner_y}
+        return substitution(dag, inner)(static.zero)
 
     def _forward(
-        self, laws: Sequence[tuple[str, Scalar]], unknown: dict[Symbol, None]
+        self, laws: Sequence[tuple[Static, Scalar]], unknown: dict[Symbol, None]
     ) -> tuple[int, Symbol, Scalar] | None:
         """A law with one unknown, in which it is linear."""
         for place, (_, zero) in enumerate(laws):
@@ -201,7 +242,7 @@ class Solver:
         return None
 
     def _backward(
-        self, laws: Sequence[tuple[str, Scalar]], unknown: dict[Symbol, None]
+        self, laws: Sequence[tuple[Static, Scalar]], unknown: dict[Symbol, None]
     ) -> tuple[int, Symbol, Scalar] | None:
         """An unknown that stands in one law only, and linearly: it follows from the others."""
         supports = [self._calculus.support(zero) for _, zero in laws]
@@ -237,3 +278,22 @@ def substituting(laws: Laws, kirchhoff: Kirchhoff, values: dict[Symbol, Scalar])
         return laws.dag.symbol(*key)
 
     return Replay(laws.dag, symbol)
+
+
+def pruned(
+    x: Scalar, calculus: Calculus, residues: Residues, doubtful: Callable[[Symbol], bool]
+) -> Scalar:
+    """A scalar without the symbols that only seem to be in it: its derivative with respect to them is zero.
+
+    Args:
+        x: the scalar.
+        calculus: derivatives over its DAG.
+        residues: what is zero.
+        doubtful: of which symbols it is asked.
+    """
+    dead = {
+        symbol: 0
+        for symbol in calculus.support(x)
+        if doubtful(symbol) and not residues(calculus.derivative(x, symbol))
+    }
+    return substitution(calculus.dag, dead)(x) if dead else x
