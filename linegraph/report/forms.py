@@ -22,6 +22,7 @@ from linegraph.notation.tree import (
 )
 from linegraph.notation.writing import pieces
 from linegraph.program import Result, operations_of
+from linegraph.regularity import cause
 from linegraph.report.document import Block, Code, Formulas, Inline, Listing, Row, Section, said
 from linegraph.report.intermediates import listed_program
 from linegraph.report.laws import vector
@@ -152,6 +153,11 @@ class Forms:
             blocks += self._forces()
         if self._subject.tree.positions:
             blocks += self._rates()
+        if idle := subject.derivation.idle:
+            why = (
+                f"The mass matrix is singular, since {cause(idle)}: it determines no accelerations."
+            )
+            blocks.append(said(why))
         return Section("Equations of motion", tuple(blocks))
 
     @property
