@@ -19,13 +19,13 @@ ORTHOGONAL = 1e-6
 """How far the axes of a frame may be from orthogonal unit vectors: matrices typed with six digits pass."""
 
 RESERVED = frozenset({"t", "der", "input", *CONSTANTS, *ARITY})
-"""Names with a meaning of their own in expressions: nothing else may have them."""
+"""Names with a meaning of their own in expressions: no symbol may have them."""
 
 
 def require_new(
     name: str, known: Container[str], who: str, problem: str = "is declared twice"
 ) -> None:
-    """Refuse a name that is taken, or that means something else in expressions.
+    """Refuse a name that is taken.
 
     Args:
         name: what something is to be called.
@@ -34,12 +34,21 @@ def require_new(
         problem: what to tell where the name is known.
 
     Raises:
-        ModelError: the name is known or reserved.
+        ModelError: the name is known.
     """
     if name in known:
         raise ModelError(who, problem)
-    if name in RESERVED:
-        raise ModelError(who, reserved_problem(name))
+
+
+def require_symbols(names: Iterable[str], who: str) -> None:
+    """Refuse names of symbols that mean something else in expressions.
+
+    Raises:
+        ModelError: a name is reserved.
+    """
+    for name in names:
+        if name in RESERVED:
+            raise ModelError(who, reserved_problem(name))
 
 
 def reserved_problem(name: str) -> str:

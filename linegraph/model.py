@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from linegraph.assemblies import add_basement, add_rotor, followers_at, locked
 from linegraph.body import GROUND, MASS_CENTER, Body, Placement, inertia_of, unit
 from linegraph.bounds import Bounded
-from linegraph.checks import finite, plain, require_new, vector
+from linegraph.checks import finite, plain, require_new, require_symbols, vector
 from linegraph.choices import Choices, chosen
 from linegraph.components import Words
 from linegraph.components.forces import forces_of
@@ -148,8 +148,8 @@ class Model(Shown, Words, Bounded):
         Raises:
             ModelError: the name is taken.
         """
-        who = f'parameter "{name}"'
-        require_new(name, self.parameters, who)
+        require_new(name, self.parameters, who := f'parameter "{name}"')
+        require_symbols((name,), who)
         if value is not None:
             finite((value,), who)
             for used in sorted(names_in(value) - self.parameters.keys()):
@@ -162,7 +162,8 @@ class Model(Shown, Words, Bounded):
         Raises:
             ModelError: the name is taken.
         """
-        require_new(name, self._inputs, f'input "{name}"')
+        require_new(name, self._inputs, who := f'input "{name}"')
+        require_symbols((name,), who)
         return self._inputs.setdefault(name, Input(name, None, unit, about))
 
     @property
@@ -256,6 +257,7 @@ class Model(Shown, Words, Bounded):
         """
         who = f'joint "{joint.name}"'
         require_new(joint.name, self._edges, who, "the name is taken; names of joints are unique")
+        require_symbols((quantity.name for quantity in joint.positions()), who)
         joint = replace(joint, axis=unit(vector(joint.axis, who), who))
         joint.require_start()
         self._joints[joint.name] = joint
@@ -320,6 +322,7 @@ class Model(Shown, Words, Bounded):
             ModelError: the name is taken.
         """
         require_new(name, [known.name for known in self.outputs], f'output "{name}"')
+        require_symbols((name,), f'output "{name}"')
         self.outputs.append(Output(name, value, unit, about))
         return self.outputs[-1]
 

@@ -87,7 +87,7 @@ class Motion:
         return len(self.mass)
 
     def acting(self, moving: bool) -> list[Scalar]:
-        """r = M a + h - Q - J^T lam, without M a where nothing accelerates."""
+        """R = M a + h - Q - J^T lam, without M a where nothing accelerates."""
         lam = [self.dag.symbol(MULTIPLIERS, k) for k in range(len(self.jacobian))]
         a = [self.dag.symbol("a", k) for k in range(self.size)] if moving else []
         found = []

@@ -323,7 +323,7 @@ class Symbolic:
 
     @cached_property
     def _held(self) -> list[Scalar]:
-        """h."""
+        """H."""
         return orthogonality.inverse_dynamics(
             self.tree, self.dag, self._arms, applied=self._applied
         )

@@ -999,7 +999,7 @@ def test_names_of_states_are_free_for_parameters() -> None:
     whole(text + capacitor("C1", "a ground"))
 
 
-@pytest.mark.parametrize("name", ["my load", "手", "u", "hinge_1", "2"])
+@pytest.mark.parametrize("name", ["my load", "手", "t", "u", "hinge_1", "2"])
 def test_what_loses_power_may_have_any_name(name: str) -> None:
     """A name is no expression: none is read from it, and no function gets the time for it."""
     text = INPUT + resistor(f'"{name}"', "a ground") + capacitor("C1", "a ground") + HEAT

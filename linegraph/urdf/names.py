@@ -24,7 +24,7 @@ ROOT = "root"
 def renamed(
     links: Sequence[Link], joints: Sequence[Joint], floating: bool, report: Report
 ) -> tuple[Sequence[Link], Sequence[Joint]]:
-    """Rename what has the name of ground, of the time or another reserved word, or of another symbol.
+    """Rename a link called like ground, and joints whose coordinates would have the name of something else.
 
     A joint x has the coordinate x with the rate x_dot, so that no other joint can be called x_dot; a planar
     joint p has p_x, p_y and more. The later one in the file gives way: a suffix tells what it is.
@@ -56,18 +56,12 @@ def _of_links(links: Sequence[Link], report: Report) -> dict[str, str]:
     found = {}
     for link in links:
         if link.name == GROUND:
-            reason = f'"{GROUND}" is the inertial frame'
-        elif link.name in RESERVED:
-            reason = f'"{link.name}" has a meaning of its own in expressions'
-        else:
-            continue
-        other = f"{link.name}_link"
-        while other in names:
-            other += "_"
-        names.add(other)
-        found[link.name] = other
-        text = f'{reason}; the link becomes the body "{other}"'
-        report.warn(link.line, named("link", link.name), text)
+            other = f"{GROUND}_link"
+            while other in names:
+                other += "_"
+            found[GROUND] = other
+            text = f'"{GROUND}" is the inertial frame; the link becomes the body "{other}"'
+            report.warn(link.line, named("link", GROUND), text)
     return found
 
 
@@ -90,9 +84,9 @@ def _of_joints(joints: Sequence[Joint], floating: bool, report: Report) -> dict[
 
 def _reason(kind: str, name: str, owners: dict[str, Claim]) -> str:
     """Why a joint cannot have a name; empty if it can."""
-    if name in RESERVED:
-        return f'"{name}" has a meaning of its own in expressions'
     for claim in _claims(kind, name):
+        if claim.name in RESERVED:
+            return f'"{name}" has a meaning of its own in expressions'
         if claim.name in owners:
             return f'{claim.own} "{shown(claim.name)}" has the name of {shown(owners[claim.name].what)}'
     return ""
