@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from functools import cache
 from pathlib import Path
@@ -14,7 +15,7 @@ from emitted import load
 
 from linegraph import modelfile, urdf
 from linegraph.emission import render
-from linegraph.statuses import NOT_FINITE, NOT_FINITE_INPUT, counted, singular_at
+from linegraph.statuses import COMMON, NOT_FINITE, NOT_FINITE_INPUT, counted, singular_at
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -199,6 +200,12 @@ def test_single_precision_is_computed_in_doubles(tmp_path: Path) -> None:
     found = python.mass_matrix(python.DEFAULT_PARAMETERS, q)
     assert found.dtype == float
     assert (found == python.mass_matrix(python.DEFAULT_PARAMETERS, q.astype(float))).all()
+
+
+def test_the_page_lists_all_statuses_that_modules_have_in_common() -> None:
+    page = (EXAMPLES.parent / "docs" / "embedding.md").read_text("utf-8")
+    rows = re.findall(r"^\| (9\d\d) \| `(\w+)` \|", page, re.MULTILINE)
+    assert [(int(number), name) for number, name in rows] == [(x.number, x.name) for x in COMMON]
 
 
 def test_numbers_of_velocities_pass_over_those_of_all_modules() -> None:
