@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from typing import TYPE_CHECKING, Any
 
@@ -64,15 +63,14 @@ class Asked:
         found: list[list[Any]] = [[], []]
         for what, of in ((0, "positions"), (1, "velocities")):
             known: dict[str, float] = {}
+            angle = rng.uniform(0.7, 1.2)
             for tree in self.trees:
                 quantities = getattr(tree, of)
                 names = [quantity.name for quantity in quantities]
                 x = drawn(rng, size, [quantity.unit for quantity in quantities])
                 x = np.array([known.setdefault(n, y) for n, y in zip(names, x, strict=True)])
-                alike = known.get("foot0")
-                if alike is not None:  # cranks that are parallel, of any angle that is not flat
-                    alike = known["foot0"] = 0.7 + 0.5 * abs(math.sin(alike))
-                    x = np.array([alike if n.startswith("foot") else -alike for n in names])
+                if "foot0" in names:  # cranks that are parallel
+                    x = np.array([angle if n.startswith("foot") else -angle for n in names])
                 found[what].append(normalised(names, x) if what == 0 else x)
         units = [quantity.unit for quantity in self.trees[1].inputs]
         torque = 1e3 * size**5
