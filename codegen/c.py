@@ -106,11 +106,11 @@ def _define(
     core = bool(statuses[program.name]) and not program.handed
     name, head = program.name, declare.signature(module, program, statuses, core=core)
     if program.handed:
-        frame = routines.handed_frame(module, program)
-        return [Definition(name, head, routines.handed(module, program, dialect), frame)]
+        lines = routines.handed(module, program, dialect)
+        return [Definition(name, head, lines, routines.handed_frame(module, program, lines))]
     if isinstance(program, Routine):
         lines = routines.body(module, program, dialect, small=real.TOLERANCES[kind.real])
-        frame = routines.frame(module, program)
+        frame = routines.frame(module, program, lines)
         made = [Definition(name + declare.CORE * core, head, lines, frame)]
     else:
         made = straight.define(module, program, statuses, kind)

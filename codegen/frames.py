@@ -73,6 +73,11 @@ class Counts(dict[str, int]):
         return 0
 
 
+def statements(lines: Iterable[str]) -> int:
+    """How many lines end a statement: the others are heads and braces."""
+    return sum(line.endswith(";") for line in lines)
+
+
 FUNCTIONS = {
     "finite": ("not_finite", "parameters_not_finite", "copy"),
     "eliminate": ("eliminate",),
@@ -92,13 +97,13 @@ def of_helpers(counts: Mapping[str, int]) -> dict[str, Frame]:
     n, c = counts["NV"], counts["NC"]
     within = {"eliminate", "too_large"}
     found = {
-        "not_finite": Frame(ints=2, parameters=2),
+        "not_finite": Frame(ints=2, parameters=2, statements=5),
         "parameters_not_finite": Frame(ints=1, parameters=1),
-        "copy": Frame(ints=1, parameters=3),
-        "too_large": Frame(ints=2, parameters=2),
+        "copy": Frame(ints=1, parameters=3, statements=3),
+        "too_large": Frame(ints=2, parameters=2, statements=5),
         "eliminate": Frame(doubles=4, ints=15, pointers=2, parameters=7),
-        "size_of": Frame(doubles=2, ints=1, parameters=2),
-        "is_rounding": Frame(ints=2, parameters=3),
+        "size_of": Frame(doubles=2, ints=1, parameters=2, statements=6),
+        "is_rounding": Frame(ints=2, parameters=3, statements=5),
         "backward": Frame(ints=4, parameters=7),
         "least_norm": Frame(doubles=4 + c * c, ints=12, pointers=1, parameters=6),
         "constrained": Frame(
@@ -117,7 +122,7 @@ def of_helpers(counts: Mapping[str, int]) -> dict[str, Frame]:
         "turn": Frame(registers=4, ints=1, parameters=1, wide=True),
         **dict.fromkeys(("gather", "scatter"), _rows()),
     }
-    found |= {f"{name}_of": Frame(parameters=2) for name in ("sign", "min", "max")}
+    found |= {f"{name}_of": Frame(parameters=2, statements=1) for name in ("sign", "min", "max")}
     return found | {
         f"lanes_{name}": Frame(ints=1, parameters=2, wide=True, calls={f"{name}_of"})
         for name in ARITY
@@ -154,10 +159,20 @@ _ROUTINES: dict[str, Made] = {
 """The algorithms of templates, their arguments and calls left out."""
 
 
-def of_routine(routine: Routine, counts: Mapping[str, int], helpers: Iterable[str]) -> Frame:
-    """The record of a function that an algorithm of a template is written for."""
+def of_routine(
+    routine: Routine, counts: Mapping[str, int], helpers: Iterable[str], statements: int
+) -> Frame:
+    """The record of a function whose algorithm is a template, written in so many statements.
+
+    Args:
+        routine: the function.
+        counts: the counts of the module.
+        helpers: what the algorithm shares with others.
+        statements: about how many it has.
+    """
     frame = _ROUTINES[routine.algorithm](Counts(counts), dict(routine.details))
     frame.parameters = len(routine.arguments) + len(routine.results)
+    frame.statements = statements
     frame.calls = {*routine.uses, *(x for helper in helpers for x in FUNCTIONS[helper])}
     return frame
 

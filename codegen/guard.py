@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from codegen import declare, failures, layout, routines
+from codegen import declare, failures, frames, layout, routines
 from codegen.frames import FUNCTIONS, Definition, Frame
 from linegraph.statuses import NOT_FINITE, NOT_FINITE_INPUT
 
@@ -35,14 +35,16 @@ def definition(
     module: Module, program: Program | Routine, statuses: dict[str, dict[int, str]]
 ) -> Definition:
     """A function that reports a status."""
+    lines = _lines(module, program)
     frame = Frame(
         doubles=sum(math.prod(result.shape) for result in program.results),
         ints=2,
         parameters=len(program.arguments) + len(program.results),
+        statements=frames.statements(lines),
         calls={program.name + declare.CORE, *FUNCTIONS["finite"]},
     )
     head = declare.signature(module, program, statuses)
-    return Definition(program.name, head, _lines(module, program), frame)
+    return Definition(program.name, head, lines, frame)
 
 
 def _lines(module: Module, program: Program | Routine) -> list[str]:

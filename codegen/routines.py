@@ -15,7 +15,7 @@ from linegraph.program import PREPARED_SUFFIX, Routine
 from linegraph.statuses import NOT_FINITE_INPUT
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from linegraph.program import Module, Program
 
@@ -116,17 +116,18 @@ def body(
     return lines
 
 
-def frame(module: Module, routine: Routine) -> Frame:
-    """What a routine keeps on the stack in C."""
+def frame(module: Module, routine: Routine, lines: Sequence[str]) -> Frame:
+    """What a routine with these lines keeps on the stack in C."""
     shared = [x for x in HELPERS[routine.algorithm] if x != "unit" or quaternions(module)]
-    return frames.of_routine(routine, layout.counts(module), shared)
+    return frames.of_routine(routine, layout.counts(module), shared, frames.statements(lines))
 
 
-def handed_frame(module: Module, program: Program | Routine) -> Frame:
+def handed_frame(module: Module, program: Program | Routine, lines: Sequence[str]) -> Frame:
     """What a function keeps there that hands its work on."""
     return Frame(
         doubles=frames.Counts(layout.counts(module))["NK"],
         parameters=len(program.arguments) + len(program.results),
+        statements=frames.statements(lines),
         calls={"prepare", program.handed, "parameters_not_finite"},
     )
 
