@@ -8,7 +8,6 @@ import zlib
 from typing import TYPE_CHECKING
 
 import mutants
-import pytest
 from test_golden import FILES, read
 
 from linegraph.emission import render
@@ -17,6 +16,8 @@ from linegraph.programs import ON_REQUEST
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    import pytest
 
     from linegraph.model import Model
 
@@ -53,7 +54,7 @@ def everything(model: Model, name: str) -> dict[str, str]:
 
 
 def test_mutants_are_seen(name: str, tmp_path: Path) -> None:
-    """Of fourteen at most three make no difference at legal states; none of these is a plain sum of a force."""
+    """Of fourteen at most three make no difference at legal states; none of these is of M, h or forces."""
     files = everything(read(name), name)
     draw = random.Random(zlib.crc32(name.encode()))
     chosen = mutants.mutants(files[f"{name}.c"], draw, COUNT)
@@ -75,7 +76,8 @@ def test_mutants_are_seen(name: str, tmp_path: Path) -> None:
 
 def test_all_kinds_are_among_them() -> None:
     text = (
-        "void f(void)\n{\n    const double t0 = 2.0 * q[1];\n    const double t1 = t0 + q[0];\n}\n"
+        "void f(void)\n{\n    const double t0 = 2.0 * q[1];\n    const double t1 = t0 + q[0];\n"
+        "    const double t2 = t1 - q[1];\n}\n"
     )
     found = mutants.mutants(text, random.Random(0), 8)
     assert {x.kind for x in found} == set(mutants.KINDS)
