@@ -15,7 +15,7 @@ from codegen.declare import block, comment
 from codegen.options import DEFAULT
 from codegen.printer import number
 from codegen.python import literal
-from linegraph.vectors import RETURNED
+from linegraph.vectors import CONSTANTS, RETURNED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -87,7 +87,11 @@ def _called_in_c(
         ]
 
     keys = [*expected.given, *(key for then in expected.then for key in then.given)]
-    loaded = [k for k in dict.fromkeys(keys) if k != "t" and not k.startswith(RETURNED)]
+    loaded = [
+        key
+        for key in dict.fromkeys(keys)
+        if key not in ("t", CONSTANTS) and not key.startswith(RETURNED)
+    ]
     calls: list[Expected | Then] = [expected, *expected.then]
     return {
         "label": expected.label,
@@ -95,8 +99,11 @@ def _called_in_c(
         "about": comment(expected.route),
         "given": [(key, given[key]) for key in loaded],
         "takes_p": any(
-            a.name == "p" for call in calls for a in _program(module, call.function).arguments
+            a.name in ("p", CONSTANTS)
+            for call in calls
+            for a in _program(module, call.function).arguments
         ),
+        "constants": dict(module.counts).get("NK", 0) if CONSTANTS in keys else 0,
         "call": ", ".join(_arguments_in_c(module, expected)),
         "results": results(expected),
         "fails": bool(statuses[expected.function]),

@@ -27,6 +27,9 @@ class Values:
     scale: Row
 
 
+CONSTANTS = "c"
+"""The key of an argument that is what `prepare` makes of the parameters."""
+
 RETURNED = "returned."
 """How the key of an argument begins that is a result of the function called before."""
 

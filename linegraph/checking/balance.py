@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from linegraph.golden.point import Point
     from linegraph.network import Network
 
+FINE = 1e-2
+"""Powers of one component balance more finely than what is solved for: a small change of a store must be seen
+beside all that flows through it."""
+
 DRIVEN = "what it stores is changed from outside, by {}"
 UNKNOWN = "the energy that it stores is not known"
 HOT = "its through times across is no power"
@@ -33,7 +37,7 @@ def balances(point: Point) -> dict[str, tuple[float, float]]:
         return {}
     network, found = exchange.network, {}
     rates = _stored_rates(point)
-    sizes = _stored_sizes(exchange)
+    sizes = _stored_sizes(point, exchange)
     unjudged = unjudged_components(point.derivation)
     for component in dict.fromkeys(branch.component for branch in network.branches):
         name = component.name
@@ -48,7 +52,7 @@ def balances(point: Point) -> dict[str, tuple[float, float]]:
                 of = [float(exchange.size(branch.name, k)) for k in (0, 1)]
                 total -= float(x * y)
                 size += max(abs(float(x)), of[0]) * max(abs(float(y)), of[1])
-        found[name] = (total, size)
+        found[name] = (total, FINE * size)
     return found
 
 
@@ -103,6 +107,15 @@ def _input_rates(point: Point) -> list[float]:
     return [point.u[slopes[k]] if k in slopes else 0.0 for k in range(len(point.u))]
 
 
-def _stored_sizes(exchange: Exchange) -> dict[str, float]:
-    """How large what is stored is: per second at unit rates."""
-    return {name: abs(float(exchange.still(x))) for name, x in exchange.network.energy.items()}
+def _stored_sizes(point: Point, exchange: Exchange) -> dict[str, float]:
+    """How large what the rate of each energy is made of is: its slopes times those of its states."""
+    network, (_, of_a) = exchange.network, point.motion[0]
+    found = {}
+    for name, stored in network.energy.items():
+        slopes = network.laws.calculus.gradient(stored)
+        found[name] = sum(
+            abs(float(exchange.still(slope))) * float(of_a[exchange.first + network.places[symbol]])
+            for symbol, slope in slopes.items()
+            if symbol in network.places
+        )
+    return found

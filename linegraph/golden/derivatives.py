@@ -120,11 +120,11 @@ class Derivatives:
 
     # -- of tau
 
-    def _of_tau(self, by: _Slopes) -> Valued:
+    def _of_tau(self, by: _Slopes, unit: Any = 1.0) -> Valued:
         """∂(M a + h), for any a."""
         np = self.point.walk.np
         found = np.einsum("ijk,j->ik", by.mass, self.point.a) + by.bias
-        return found, self._sizes(found, self.point.inverse[1])
+        return found, self._sizes(found, self.point.inverse[1], unit)
 
     @property
     def tau_by_changes(self) -> Valued:
@@ -139,24 +139,33 @@ class Derivatives:
     @property
     def tau_by_parameters(self) -> Valued:
         """∂τ/∂p."""
-        return self._of_tau(self._by_parameters)
+        return self._of_tau(self._by_parameters, self._parameter_units)
 
-    def _sizes(self, found: Array, sizes: Array) -> Array:
+    @cached_property
+    def _parameter_units(self) -> Array:
+        """For each parameter what its derivatives are counted in: those by its relative change."""
+        np, model = self.point.walk.np, self.point.derivation.model
+        values = self.point.walk.numeric.parameters
+        own = [abs(float(values[p.name])) for p in model.parameters.values() if not p.derived]
+        return np.array([1 / x if x else 0.0 for x in own])
+
+    def _sizes(self, found: Array, sizes: Array, unit: Any = 1.0) -> Array:
         """What entries are made of: of each variable what it does most, each row in its own measure.
 
         What does nothing may be what is left of much that does: at least a fraction of what mechanics
-        does most, and of what a unit does, for states and shifts are of its size.
+        does most, and of what a unit does, for states and shifts are of its size. Parameters are not, and
+        inputs stand beside forces of any size: there the unit is that of each, or nothing.
         """
         np = self.point.walk.np
         measure = np.where(sizes > 0, sizes, np.inf)[:, None]
         most = (np.abs(found) / measure).max(axis=0, initial=0.0)
         alike = most[: self._count].max(initial=0.0) if len(most) == self._count else 0.0
-        most = np.maximum(most, IDLE * max(alike, 1.0))
+        most = np.maximum(most, IDLE * np.maximum(alike, unit))
         return np.maximum(np.abs(found), sizes[:, None] * most)
 
     # -- of v̇
 
-    def _of_motion(self, by: _Slopes) -> Valued:
+    def _of_motion(self, by: _Slopes, unit: Any = 1.0) -> Valued:
         """∂v̇ = -M⁻¹ ∂r at the v̇ of the state."""
         np, (M, of_M) = self.point.walk.np, self.point.bodies.mass_matrix
         a, of_a = self.point.motion[0]
@@ -165,9 +174,9 @@ class Derivatives:
         slopes = np.einsum("ijk,j->ik", by.mass, a) + by.bias - by.forces
         found = -inverse @ slopes
         size = self.point.force[1] + np.abs(M) @ np.abs(a)
-        of_slopes = self._sizes(slopes, size)
+        of_slopes = self._sizes(slopes, size, unit)
         parts = np.abs(inverse) @ (of_slopes + of_M @ np.abs(found))
-        return found, np.maximum(parts, self._sizes(found, of_a))
+        return found, np.maximum(parts, self._sizes(found, of_a, unit))
 
     @cached_property
     def motion_by_changes(self) -> Valued:
@@ -182,12 +191,12 @@ class Derivatives:
     @cached_property
     def motion_by_inputs(self) -> Valued:
         """∂v̇/∂u."""
-        return self._of_motion(self._by_inputs)
+        return self._of_motion(self._by_inputs, 0.0)
 
     @cached_property
     def motion_by_parameters(self) -> Valued:
         """∂v̇/∂p."""
-        return self._of_motion(self._by_parameters)
+        return self._of_motion(self._by_parameters, self._parameter_units)
 
     # -- of the state
 
@@ -274,13 +283,13 @@ class Derivatives:
         force = bodies.forces[0] - bodies.bias[0] - M @ rest
         return v.imag / STEP, np.linalg.solve(T.T @ M @ T, T.T @ force).imag / STEP
 
-    def _of_independent(self, walks: Sequence[Walk]) -> tuple[Array, Valued]:
+    def _of_independent(self, walks: Sequence[Walk], unit: Any = 1.0) -> tuple[Array, Valued]:
         """The derivatives of v and of ẇ."""
         np, kept = self.point.walk.np, list(self.point.kept.velocities)
         columns = [self._motion(walk) for walk in walks]
         moved = np.array([v for v, _ in columns]).reshape(len(walks), len(self.point.v)).T
         found = np.array([x for _, x in columns]).reshape(len(walks), len(kept)).T
-        return moved, (found, self._sizes(found, self.point.motion[0][1][kept]))
+        return moved, (found, self._sizes(found, self.point.motion[0][1][kept], unit))
 
     @cached_property
     def _positions(self) -> Array:
@@ -310,7 +319,7 @@ class Derivatives:
     def _by_inputs_on_constraints(self) -> Valued:
         np = self.point.walk.np
         units = np.eye(len(self.point.u))
-        _, (below, of_below) = self._of_independent([self._beside(du=du) for du in units])
+        _, (below, of_below) = self._of_independent([self._beside(du=du) for du in units], 0.0)
         above = np.zeros((len(self.point.kept.changes), len(units)))
         return np.vstack([above, below]), np.vstack([above, of_below])
 

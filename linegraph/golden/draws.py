@@ -51,6 +51,9 @@ SOLVED = ("a", "A", "B", "da_dq", "da_dv", "da_du", "da_dp", "Lambda", "R", "D",
 APART = (0.8, 1.25)
 """Parameters that are drawn are within these multiples of the model's own values."""
 
+SLOW, SLOW_AT = 1e-3, 4
+"""Velocities at one of the states are so small that dry friction has not yet risen; which state that is."""
+
 GAP = 1e-9
 """What constraints may miss, at most, in lengths and angles of size 1."""
 
@@ -128,7 +131,8 @@ class Drawing:
             varied = self.varied and place % 2 == 1 and attempt < TRIES // 2
             try:
                 rest = place == 0 and attempt < 2
-                point = self._drawn((low, reach), rest=rest, varied=varied)
+                slow = SLOW if place == SLOW_AT and attempt < TRIES // 2 else 1.0
+                point = self._drawn((low, reach), rest=rest, varied=varied, slow=slow)
                 if point is not None and self._defined(point):
                     return point
             except ModelError as error:
@@ -149,13 +153,16 @@ class Drawing:
         except (ModelError, ArithmeticError):
             return None
 
-    def _drawn(self, within: tuple[float, float], *, rest: bool, varied: bool) -> Point | None:
+    def _drawn(
+        self, within: tuple[float, float], *, rest: bool, varied: bool, slow: float
+    ) -> Point | None:
         """A state: at rest in mechanics, or a random one, on the constraints if there are any.
 
         Args:
             within: the least value drawn, and how far states of networks and inputs reach.
             rest: whether it is to be at rest.
             varied: whether parameters are to be drawn.
+            slow: what velocities of mechanics are multiplied by.
 
         Returns:
             None where the loops do not close, or not within the bounds.
@@ -170,7 +177,7 @@ class Drawing:
         numeric = self.derivation.numeric(p, t, u)
         both = tree.velocities[:first], tree.velocities[first:]
         states = self._some(both[1], bounds.velocities, (reach * low, reach))
-        v = self._some(both[0], bounds.velocities, (-1.0, 1.0), still=rest)
+        v = self._some(both[0], bounds.velocities, (-slow, slow), still=rest)
         q = self._some(tree.positions, bounds.coordinates, (low, 1.0))
         if rest:
             q = _held(tree.positions, bounds.coordinates, _at_rest(self.derivation))
@@ -180,6 +187,7 @@ class Drawing:
             if rest and not model.depends_on_time and not any(u) and not varied:
                 q, found = list(self.derivation.assembled.q), [0.0] * len(found)
             v, states = found[:first], found[first:] if not rest else states
+            v = [slow * x for x in v]
             if not self._legal(numeric, q, [*v, *states]):
                 return None
         q, v = [short(x, 15) for x in q], [short(x, 15) for x in (*v, *states)]

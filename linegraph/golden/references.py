@@ -142,40 +142,25 @@ def _v_on(point: Point) -> Valued:
     return v, np.abs(v) + of_T @ np.abs(point.w)
 
 
-def _A(point: Point) -> Valued:
-    return point.slopes.state_by_state
+def _of_slopes(name: str, key: str) -> Callable[[Point], Valued]:
+    """What gives one derivative: a property of `Derivatives`."""
+
+    def made(point: Point) -> Valued:
+        return getattr(point.slopes, key)  # type: ignore[no-any-return]
+
+    made.__name__ = name
+    return made
 
 
-def _B(point: Point) -> Valued:
-    return point.slopes.state_by_inputs
-
-
-def _dtau_dq(point: Point) -> Valued:
-    return point.slopes.tau_by_changes
-
-
-def _dtau_dv(point: Point) -> Valued:
-    return point.slopes.tau_by_velocities
-
-
-def _dtau_dp(point: Point) -> Valued:
-    return point.slopes.tau_by_parameters
-
-
-def _da_dq(point: Point) -> Valued:
-    return point.slopes.motion_by_changes
-
-
-def _da_dv(point: Point) -> Valued:
-    return point.slopes.motion_by_velocities
-
-
-def _da_du(point: Point) -> Valued:
-    return point.slopes.motion_by_inputs
-
-
-def _da_dp(point: Point) -> Valued:
-    return point.slopes.motion_by_parameters
+_A = _of_slopes("_A", "state_by_state")
+_B = _of_slopes("_B", "state_by_inputs")
+_dtau_dq = _of_slopes("_dtau_dq", "tau_by_changes")
+_dtau_dv = _of_slopes("_dtau_dv", "tau_by_velocities")
+_dtau_dp = _of_slopes("_dtau_dp", "tau_by_parameters")
+_da_dq = _of_slopes("_da_dq", "motion_by_changes")
+_da_dv = _of_slopes("_da_dv", "motion_by_velocities")
+_da_du = _of_slopes("_da_du", "motion_by_inputs")
+_da_dp = _of_slopes("_da_dp", "motion_by_parameters")
 
 
 def _com(point: Point) -> Valued:

@@ -16,7 +16,7 @@ from linegraph.golden.draws import DIGITS, Asked, Drawing, short
 from linegraph.golden.point import Kept, Point
 from linegraph.golden.references import Reference, references
 from linegraph.program import PREPARED_SUFFIX, Routine
-from linegraph.vectors import RETURNED, Expected, Then, Values, Vectors
+from linegraph.vectors import CONSTANTS, RETURNED, Expected, Then, Values, Vectors
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -37,9 +37,6 @@ UNTESTED = {
 NO_ROUTE = "there is no independent route to what it returns"
 EMPTY = "it returns nothing here"
 HANDED = "called by the function of its name without the ending"
-TWIN = (
-    "the function of its name without the ending, which is compared, from the constants of prepare"
-)
 
 
 def vectors(
@@ -118,10 +115,10 @@ class _Written:
     def given(self, program: Program | Routine, keys: Mapping[str, str]) -> tuple[str, ...]:
         """For each argument of a function its key."""
         names = [argument.name for argument in program.arguments]
-        self.parametric = self.parametric or "p" in names
+        self.parametric = self.parametric or bool({"p", CONSTANTS} & {*names})
         found = tuple(keys.get(name, name) for name in names if name != "p")
         for key in found:
-            if not key.startswith(RETURNED):
+            if not key.startswith(RETURNED) and key != CONSTANTS:
                 self.arguments[key] = tuple(_argument(point, key) for point in self._points)
         return found
 
@@ -141,12 +138,16 @@ def _compared(
 ) -> list[tuple[str, Program | Routine, Reference]]:
     """What is compared: label, function and reference, in emitted order."""
     found = []
+    handed = {program.handed for program in module.programs}
     for program in module.programs:
+        # a function that takes the constants of prepare is called by the one without, or is a text of its own
+        name = program.name.removesuffix(PREPARED_SUFFIX)
+        twin = PREPARED_SUFFIX * (name != program.name)
         for label, reference in register.items():
-            own = (reference.function or label) == program.name and _returns(program)
+            own = (reference.function or label) == name and _returns(program)
             whole = all(r.name in reference.results for r in program.results)
-            if own and (whole or reference.then):
-                found.append((label, program, reference))
+            if own and program.name not in handed and (whole or reference.then):
+                found.append((label + twin, program, reference))
     return found
 
 
@@ -171,8 +172,6 @@ def _untested(compared: set[str], module: Module) -> tuple[tuple[str, str], ...]
     def why(program: Program | Routine) -> str:
         if program.name in handed:
             return HANDED
-        if program.name.removesuffix(PREPARED_SUFFIX) in compared:
-            return TWIN
         return UNTESTED.get(program.name, NO_ROUTE) if _returns(program) else EMPTY
 
     return tuple((p.name, why(p)) for p in module.programs if p.name not in compared)

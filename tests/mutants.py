@@ -1,0 +1,176 @@
+"""Mutants of emitted C: one sign, constant, index or operand of one statement is wrong.
+
+All mutants of a file are compiled at once: each statement chosen becomes ``mutant == K ? wrong : right``, and
+the environment says which one is meant. So a thousand mutants cost one compilation for each model.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import random
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+KINDS = ("sign", "constant", "index", "operand")
+
+_STATEMENT = re.compile(
+    r"^( +(?:const )?(?:double |real |float )?[A-Za-z_][\w\[\]>. *+()-]*? [-+*/]?= )(.+);$"
+)
+_NOT = re.compile(
+    r"\bint\b|\benum\b|\{|\}|\bfor\b|\bswitch\b|\?|==|\bstatus\b|\bstruct\b|SOLVED|_OK\b|\""
+)
+_OPENED = re.compile(r"^(?:static |[A-Z_0-9]+ )*(?:void|int|double|float)\b.*?\b(\w+)\(")
+
+SIGN = re.compile(r"(?<= )[-+](?= )")
+CONSTANT = re.compile(r"(?<![\w.\[])\d+\.\d*(?:e[-+]?\d+)?(?![\w.\]])")
+INDEX = re.compile(r"(?<=\[)\d+(?=\])")
+OPERAND = re.compile(r"\bt\d+\b")
+
+HEAD = """#include <stdlib.h>
+static int lg_mutant;
+__attribute__((constructor)) static void lg_choose(void)
+{
+    const char *text = getenv("MUTANT");
+    lg_mutant = text ? atoi(text) : 0;
+}
+"""
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One wrong statement.
+
+    Attributes:
+        line: which line of the file.
+        function: in which function.
+        kind: one of `KINDS`.
+        right, wrong: the expression assigned.
+    """
+
+    line: int
+    function: str
+    kind: str
+    right: str
+    wrong: str
+
+
+def mutants(text: str, draw: random.Random, count: int) -> list[Mutant]:
+    """Some mutants of a file, of all kinds and functions alike."""
+    found = list(_statements(text))
+    draw.shuffle(found)
+    chosen: list[Mutant] = []
+    used: set[tuple[int, str]] = set()
+    while found and len(chosen) < count:
+        before = len(chosen)
+        for kind in KINDS:
+            for line, function, right, names in found:
+                if (line, kind) in used:
+                    continue
+                used.add((line, kind))
+                wrong = _wrong(kind, right, names, draw)
+                if wrong is not None and wrong != right:
+                    chosen.append(Mutant(line, function, kind, right, wrong))
+                    break
+            if len(chosen) == count:
+                break
+        if len(chosen) == before:
+            break
+    return chosen
+
+
+def _statements(text: str) -> Iterator[tuple[int, str, str, list[str]]]:
+    """Assignments to numbers: line, function, what is assigned, and the names that are known before."""
+    function, names = "", []
+    for number, line in enumerate(text.split("\n")):
+        if line.startswith("}"):
+            function, names = "", []
+        opened = _OPENED.match(line)
+        if opened:
+            function, names = opened[1], []
+        found = _STATEMENT.match(line)
+        if found is None or not function or _NOT.search(line) or found[2] in ("0.0", "-0.0"):
+            continue
+        yield number, function, found[2], list(names)
+        made = re.match(r" +const double (t\d+) = ", line)
+        if made:
+            names.append(made[1])
+
+
+def _wrong(kind: str, right: str, names: Sequence[str], draw: random.Random) -> str | None:
+    """An expression with one thing wrong; None where it has nothing of the kind."""
+    plain = re.sub(r"\[[^\]]*\]", lambda x: "[" + "_" * (len(x[0]) - 2) + "]", right)
+    if kind == "sign":
+        places = list(SIGN.finditer(plain))
+        if not places:
+            return f"-({right})"
+        place = draw.choice(places)
+        return right[: place.start()] + "-+"[place[0] == "-"] + right[place.end() :]
+    if kind == "constant":
+        places = list(CONSTANT.finditer(plain))
+        if not places:
+            return None
+        place = draw.choice(places)
+        return f"{right[: place.start()]}(1.00001 * {place[0]}){right[place.end() :]}"
+    if kind == "index":
+        places = [x for x in INDEX.finditer(right) if int(x[0]) > 0]
+        if not places:
+            return None
+        place = draw.choice(places)
+        return f"{right[: place.start()]}{int(place[0]) - 1}{right[place.end() :]}"
+    places = list(OPERAND.finditer(plain))
+    others = [name for name in names if name not in {x[0] for x in places}]
+    if not places or not others:
+        return None
+    place = draw.choice(places)
+    return right[: place.start()] + draw.choice(others) + right[place.end() :]
+
+
+def schemata(text: str, chosen: Sequence[Mutant]) -> str:
+    """The file with all mutants in it; none of them is on unless the environment says so."""
+    lines = text.split("\n")
+    for number, mutant in enumerate(chosen, 1):
+        head, _, _ = lines[mutant.line].partition("= ")
+        known = lines[mutant.line][len(head) + 2 : -1]
+        lines[mutant.line] = f"{head}= (lg_mutant == {number}) ? ({mutant.wrong}) : ({known});"
+    return HEAD + "\n".join(lines)
+
+
+def build(files: dict[str, str], name: str, chosen: Sequence[Mutant], folder: Path) -> Path:
+    """Compile golden vectors with all mutants."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for file, text in files.items():
+        (folder / file).write_text(text, encoding="ascii", newline="\n")
+    (folder / f"{name}.c").write_text(schemata(files[f"{name}.c"], chosen), encoding="ascii")
+    program = folder / "check"
+    command = [
+        "gcc",
+        "-std=gnu99",
+        "-O0",
+        "-w",
+        f"{name}_test.c",
+        f"{name}.c",
+        "-lm",
+        "-o",
+        program,
+    ]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[:2000]
+    return program
+
+
+def run(program: Path, number: int) -> tuple[bool, str]:
+    """Whether golden vectors hold with a mutant, 0 for none, and what they print."""
+    environment = {**os.environ, "MUTANT": str(number)}
+    try:
+        done = subprocess.run(
+            [str(program)], env=environment, capture_output=True, text=True, check=False, timeout=60
+        )
+    except subprocess.TimeoutExpired:
+        return False, "does not end"
+    return done.returncode == 0, done.stdout
