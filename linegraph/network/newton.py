@@ -83,6 +83,11 @@ class _Point:
         """Whether it is a solution."""
         return self.gap == 0 or (self.rounding and self.gap < math.inf)
 
+    @property
+    def steep(self) -> bool:
+        """Whether a slope is infinite, as that of a root at zero is: nothing is flat there."""
+        return not all(math.isfinite(x) for row in self.jacobian for x in row)
+
     def step(self, right: Vector) -> Vector | None:
         """What solves ``jacobian step = right``; None where it is singular."""
         import numpy as np
@@ -176,7 +181,8 @@ def _nearer(
     for _ in range(MOST_HALVINGS):
         ahead = [a + length * b for a, b in zip(at.x, step, strict=True)]
         found = evaluate(ahead, series, parallel)
-        if found.gap <= (1 - DECREASE * length) * at.gap:
+        usable = found.solved or not found.steep
+        if usable and found.gap <= (1 - DECREASE * length) * at.gap:
             return found
         length /= 2
     return None
@@ -203,7 +209,7 @@ def _only(evaluate: Evaluate, found: _Point) -> Vector:
     Raises:
         ModelError: it is not the only one.
     """
-    if found.step(found.residual) is not None:
+    if found.steep or found.step(found.residual) is not None:
         return found.x
     eased = evaluate(found.x, PROBE_EASE, PROBE_EASE)
     flat = eased.step([size if size > 0 else 1.0 for size in found.sizes])
