@@ -25,6 +25,7 @@ from linegraph.factorization import singular
 from linegraph.formulation import Formulation, formulate
 from linegraph.numeric import Numeric
 from linegraph.parameters import Parameter, valued
+from linegraph.potentials import require_energies
 from linegraph.regularity import require_regular
 from linegraph.scope import require_linear
 from linegraph.transfer import transfer
@@ -223,6 +224,7 @@ def derive(model: Model) -> Derivation:
             derivation.require_relations()
             _ = derivation.assembled
         derivation.require_stores()
+        require_energies(model)
     except ModelError as error:
         raise placed(error, model) from None
     return derivation

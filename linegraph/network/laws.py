@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from linegraph.antiderivative import antiderivative
 from linegraph.checks import nearest
 from linegraph.components.base import ACROSS, STATIC, Component
 from linegraph.differentiation import Calculus, Symbol, substitute
@@ -157,7 +158,12 @@ def _evaluate(component: Component, at: At, laws: Laws) -> None:
     charges = component.charges(at)
     zeros = component.laws(at)
     if charges is not None:
-        laws.charged.add(component.name)
+        keys = [key_of((at.X, at.Y)[b.kept != ACROSS][k]) for k, b in enumerate(at.branches)]
+        integrated = _coenergy(charges, keys, calculus)
+        if integrated is None:
+            laws.charged.add(component.name)
+        else:
+            work, charges = integrated, None
     own_energy = component.own_energy(at)
     driven = changing(component, at.branches, calculus, (work, own_energy, *(charges or ())))
     if driven:
@@ -195,6 +201,15 @@ def _evaluate(component: Component, at: At, laws: Laws) -> None:
     energy = work if quadratic or charges is not None else stored - work
     laws.energy[component.name] = own_energy + energy
     laws.heat[component.name] = component.dissipation(at)
+
+
+def _coenergy(
+    charges: Sequence[Scalar], keys: Sequence[Symbol], calculus: Calculus
+) -> Scalar | None:
+    """The co-energy of a store by its charge, ``∫ Q dk``; None where no rule gives it."""
+    if len(charges) != 1:
+        return None
+    return antiderivative(calculus, charges[0], keys[0])
 
 
 def _proportional(charge: Scalar, kept: set[Symbol], laws: Laws) -> bool:
