@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from linegraph.differentiation import operands, substitution
+from linegraph.errors import ModelError
 from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL, Node
 from linegraph.residues import Residues
 
@@ -35,6 +36,8 @@ class _None(Exception):
 def antiderivative(calculus: Calculus, f: Scalar, by: Symbol) -> Scalar | None:
     """A scalar whose derivative with respect to a symbol is f; None where no rule gives one.
 
+    It is zero where the symbol is, unless it may be infinite there.
+
     Args:
         calculus: of the DAG that f is of.
         f: the scalar.
@@ -53,9 +56,31 @@ def antiderivative(calculus: Calculus, f: Scalar, by: Symbol) -> Scalar | None:
         14.0
     """
     try:
-        return _Rules(calculus, by).of(f)
+        found = _Rules(calculus, by).of(f)
     except (_None, ZeroDivisionError):
         return None
+    try:
+        at_zero = substitution(calculus.dag, {by: 0})(found)
+    except (ArithmeticError, ModelError):
+        return found
+    sure = not isinstance(at_zero, Node) or not _has_pole(calculus, found, by)
+    return found - at_zero if sure else found
+
+
+def _has_pole(calculus: Calculus, f: Scalar, by: Symbol) -> bool:
+    """Whether something that varies is divided by, or has its logarithm taken."""
+    pending = [f]
+    seen: set[int] = set()
+    while pending:
+        x = pending.pop()
+        if not isinstance(x, Node) or x.index in seen or by not in calculus.support(x):
+            continue
+        seen.add(x.index)
+        below = {DIV: x.b, "log": x.a}.get(x.op)
+        if isinstance(below, Node) and by in calculus.support(below):
+            return True
+        pending += operands(x)
+    return False
 
 
 class _Rules:
@@ -181,7 +206,9 @@ class _Rules:
         clip = factors[0]
         if len(factors) != 1 or clip.op not in ("max", "min"):
             return None
-        inner = next((x for x in (clip.a, clip.b) if self._varies(x) and x.op in ("max", "min")), None)
+        inner = next(
+            (x for x in (clip.a, clip.b) if self._varies(x) and x.op in ("max", "min")), None
+        )
         other = clip.b if inner is clip.a else clip.a
         if inner is not None and not self._varies(other):
             return self._limited(clip.op, other, inner)

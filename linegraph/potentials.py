@@ -36,9 +36,7 @@ class _Unknown(Exception):
     """The energy is not known; says why."""
 
 
-def stored(
-    model: Model, element: Element, algebra: Algebra, x: Scalar, resolve: Resolve
-) -> Scalar:
+def stored(model: Model, element: Element, algebra: Algebra, x: Scalar, resolve: Resolve) -> Scalar:
     """The potential energy of an element at x (J); 0 where it is not known.
 
     Args:
@@ -115,7 +113,9 @@ def require_energies(model: Model) -> None:
         inputs = sorted(names_in(given) & {q.name for q in model.inputs})
         if inputs or any(s[0] == RATE for s in trace.calculus.support(energy)):
             what = inputs[0] if inputs else "v"
-            raise ModelError(who, f"energy: names {what}; what is stored depends on positions alone")
+            raise ModelError(
+                who, f"energy: names {what}; what is stored depends on positions alone"
+            )
         if not trace.equal(trace.calculus.derivative(energy, (X, None)), rest):
             problem = (
                 "energy: its derivative with respect to x is not the force at v = 0 with inputs at zero; "

@@ -14,7 +14,6 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from linegraph.antiderivative import antiderivative
 from linegraph.checks import nearest
 from linegraph.components.base import ACROSS, STATIC, Component
 from linegraph.differentiation import Calculus, Symbol, substitute
@@ -22,7 +21,7 @@ from linegraph.domains import DOMAINS
 from linegraph.errors import ModelError
 from linegraph.expression import Dag, Node
 from linegraph.formula import variable_of
-from linegraph.network.stored import changing
+from linegraph.network.stored import changing, coenergy_of, own_energy_of
 from linegraph.parameters import names_in, resolver, valued
 from linegraph.program import Quantity
 from linegraph.residues import CONSTANT
@@ -87,7 +86,7 @@ class Laws:
     Attributes:
         energy: stored by each component; in powers of what is kept only where a co-energy is known.
         heat: the power each component dissipates.
-        charged: components whose charges are given as such, and no energy.
+        unknown: components whose energy is not known: of a charge or a force that no rule integrates.
         driven: stores whose value the time or inputs change, and the names of these.
     """
 
@@ -99,7 +98,7 @@ class Laws:
     own: list[Own] = field(default_factory=list)
     energy: dict[str, Scalar] = field(default_factory=dict)
     heat: dict[str, Scalar] = field(default_factory=dict)
-    charged: set[str] = field(default_factory=set)
+    unknown: set[str] = field(default_factory=set)
     driven: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
 
@@ -154,17 +153,14 @@ def _require_names(component: Component, names: _Names) -> None:
 def _evaluate(component: Component, at: At, laws: Laws) -> None:
     """One component's statics, stores, states, energy and heat."""
     calculus = laws.calculus
-    work = component.kept_coenergy(at)
     charges = component.charges(at)
+    work = (
+        component.kept_coenergy(at)
+        if charges is None
+        else coenergy_of(component, at, laws, charges)
+    )
     zeros = component.laws(at)
-    if charges is not None:
-        keys = [key_of((at.X, at.Y)[b.kept != ACROSS][k]) for k, b in enumerate(at.branches)]
-        integrated = _coenergy(charges, keys, calculus)
-        if integrated is None:
-            laws.charged.add(component.name)
-        else:
-            work, charges = integrated, None
-    own_energy = component.own_energy(at)
+    own_energy = own_energy_of(component, at, laws)
     driven = changing(component, at.branches, calculus, (work, own_energy, *(charges or ())))
     if driven:
         laws.driven[component.name] = driven
@@ -198,18 +194,9 @@ def _evaluate(component: Component, at: At, laws: Laws) -> None:
         quantity = Quantity(f"{letter}_{component.name}", unit, f"{about} of {component.name}")
         laws.own.append(Own(key_of(at.x), quantity, at.X[-1]))
     # of charges in proportion to what is kept energy and co-energy are the same
-    energy = work if quadratic or charges is not None else stored - work
+    energy = 0 if component.name in laws.unknown else work if quadratic else stored - work
     laws.energy[component.name] = own_energy + energy
     laws.heat[component.name] = component.dissipation(at)
-
-
-def _coenergy(
-    charges: Sequence[Scalar], keys: Sequence[Symbol], calculus: Calculus
-) -> Scalar | None:
-    """The co-energy of a store by its charge, ``∫ Q dk``; None where no rule gives it."""
-    if len(charges) != 1:
-        return None
-    return antiderivative(calculus, charges[0], keys[0])
 
 
 def _proportional(charge: Scalar, kept: set[Symbol], laws: Laws) -> bool:

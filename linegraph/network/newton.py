@@ -56,7 +56,6 @@ PROBE_EASE, PROBE = 1e-8, 1e-6
 solution is looked for."""
 
 
-
 @dataclass(frozen=True)
 class _Point:
     """The loop at given unknowns: residuals, their derivatives, and the sizes of their terms."""
@@ -122,9 +121,7 @@ def solved(network: Network, known: Callable[[Symbol], float]) -> Vector:
     raise ModelError("model", "the algebraic loop of its network has no solution here")
 
 
-def _evaluation(
-    network: Network, known: Callable[[Symbol], float]
-) -> Evaluate:
+def _evaluation(network: Network, known: Callable[[Symbol], float]) -> Evaluate:
     """The loop as a function of its unknowns and of the resistance and the conductance at its laws."""
     size = len(network.loop)
     given = {symbol: known(symbol) for symbol in network.loop_needs}
@@ -147,9 +144,7 @@ def _evaluation(
     return evaluate
 
 
-def _run(
-    evaluate: Evaluate, x: Vector, series: float, parallel: float
-) -> _Point:
+def _run(evaluate: Evaluate, x: Vector, series: float, parallel: float) -> _Point:
     """Newton's method with halved steps, as far as it comes."""
     at = evaluate(x, series, parallel)
     eased = series > 0
@@ -188,9 +183,7 @@ def _nearer(
     return None
 
 
-def _followed(
-    evaluate: Evaluate, size: int, resistance: float
-) -> _Point:
+def _followed(evaluate: Evaluate, size: int, resistance: float) -> _Point:
     """The solution that is reached as resistances at the laws vanish."""
     x = [NEAR * (1 + i / 8) for i in range(size)]
     ease = FIRST
