@@ -25,6 +25,7 @@ from linegraph.factorization import singular
 from linegraph.formulation import Formulation, formulate
 from linegraph.numeric import Numeric
 from linegraph.parameters import Parameter, valued
+from linegraph.potentials import require_energies
 from linegraph.register import declared, require_distinct, require_own
 from linegraph.regularity import Idle, massless, refusal, require_motion, sample_tree
 from linegraph.scope import require_linear
@@ -282,6 +283,7 @@ def derive(model: Model) -> Derivation:
         if derivation.structure.closed and derivation.valued:
             derivation.require_relations()
         _ = derivation.idle
+        require_energies(model)
     except ModelError as error:
         raise placed(error, model) from None
     return derivation

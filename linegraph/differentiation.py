@@ -27,6 +27,9 @@ Symbol = tuple[str, Any]
 
 Gradient = dict[Symbol, "Scalar"]
 
+SMALLEST = 1e-300
+"""Keeps a quotient of zeros zero."""
+
 
 class Calculus:
     """Derivatives and supports of the nodes of one DAG, each found once.
@@ -248,10 +251,17 @@ class Sizes:
             return a / self._dag.function("abs", node.b)
         if node.b is not None:
             return a + b
+        if node.op == "sqrt":
+            return self._of_root(node, a)
         return (
             self._dag.function("abs", node)
             + self._dag.function("abs", self._calculus.slope(node)) * a
         )
+
+    def _of_root(self, node: Node, a: Scalar) -> Scalar:
+        """Of a root, whose slope is infinite at zero: an error of e a there is one of sqrt(e a) at most."""
+        steep = a / (2 * node + (1e-5 * self._dag.sqrt(a) + SMALLEST))
+        return self._dag.function("abs", node) + steep
 
     def _given(self, node: Node) -> bool:
         """Whether a node is the same number at every evaluation."""

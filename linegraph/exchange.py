@@ -163,7 +163,9 @@ class Exchange:
             try:
                 total = total + self._moving(stored)
             except ModelError as error:
-                kind = next(b.component.kind for b in self.network.branches if b.component.name == name)
+                kind = next(
+                    b.component.kind for b in self.network.branches if b.component.name == name
+                )
                 raise ModelError(f'{kind} "{name}"', f"its energy: {error.problem}") from None
         return total
 

@@ -6,7 +6,7 @@ from collections import ChainMap
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from linegraph import vector
+from linegraph import potentials, vector
 from linegraph.algebra import set_label
 from linegraph.closure import Chords
 from linegraph.components.forces import NetworkForce, forces_of
@@ -67,7 +67,8 @@ def applied(
 ) -> Applied:
     """Evaluate the elements and loads that depend on inputs (`driven`), or those that do not.
 
-    Of networks the part with inputs zero, or what inputs add to that; or what `network` says.
+    Of networks the part with inputs zero, or what inputs add to that; or what `network` says. What elements
+    hold that inputs drive, too, is counted with those that they do not.
 
     Raises:
         ModelError: a law names something that does not exist.
@@ -75,12 +76,16 @@ def applied(
     found: list[Element | Load] = [
         e for e in model.force_elements if depends_on_inputs(model, e.values()) == driven
     ]
-    if not found and tree.network is None:
+    storing = [] if driven else [e for e in model.force_elements if e not in found]
+    if not found and not storing and tree.network is None:
         return Applied([(ZERO, ZERO)] * len(tree.links), [0] * len(tree.velocities))
     found += forces_of(model.components)
     chords = Chords(tree, algebra, crossed, parameters)
     what = network or (DRIVEN if driven else RESTING)
-    return Acting(model, tree, algebra, parameters, chords, (q, v), what).of(found)
+    acting = Acting(model, tree, algebra, parameters, chords, (q, v), what)
+    for element in storing:
+        acting.hold(element)
+    return acting.of(found)
 
 
 def efforts(
@@ -121,6 +126,7 @@ class Acting:
         acceleration: Sequence[Scalar] | None = None,
     ) -> None:
         """Nothing acts yet; `what` of networks is asked for, and at which v̇."""
+        self._model = model
         self._tree = tree
         self._algebra = algebra
         self._state = state
@@ -304,8 +310,22 @@ class Acting:
         known = self._wrenches[link]
         self._wrenches[link] = (add(known[0], into(force)), add(known[1], into(torque)))
 
+    def hold(self, element: Element) -> None:
+        """Count an element's potential energy alone."""
+        if potentials.holds(self._model, element):
+            self._store(element, self._measured(element))
+
+    def _measured(self, element: Element) -> Scalar:
+        """An element's coordinate or length."""
+        if element.joint is not None:
+            return self._motion(element.joint)[0]
+        assert element.between is not None
+        (_, a), (_, b) = (self.terminal(end) for end in element.between)
+        return self._line(a, b)[0]
+
     def _store(self, element: Element, x: Scalar) -> None:
-        self._potential = self._potential + element.potential(self._algebra, x, self._resolve)
+        held = potentials.stored(self._model, element, self._algebra, x, self._resolve)
+        self._potential = self._potential + held
 
 
 class _Taken(dict[str, Any]):

@@ -21,6 +21,7 @@ from linegraph import (
 from linegraph.articulated import forward_dynamics
 from linegraph.errors import ModelError
 from linegraph.factorization import Solution, solve
+from linegraph.potentials import unknown
 from linegraph.program import (
     Argument,
     Call,
@@ -40,6 +41,8 @@ if TYPE_CHECKING:
 
     from linegraph.derive import Derivation
     from linegraph.division import Made
+    from linegraph.model import Model
+    from linegraph.network import Network
     from linegraph.tips import NamedFrame
     from linegraph.vector import Scalar
 
@@ -282,6 +285,15 @@ def _coordinate_rates(f: Functions) -> Program:
     return f.program("coordinate_rates", about, ("q", "v"), (result,))
 
 
+def energy_remark(model: Model, network: Network | None) -> str:
+    """Which elements and components store energy that is not known, and why."""
+    found = [f"{who} ({why})" for who, why in unknown(model).items()]
+    if network is not None:
+        names = [b.component for b in network.branches if b.component.name in network.unknown]
+        found += [f"{c.kind} {c.name}" for c in dict.fromkeys(names)]
+    return f" Not known, and left out: the energy of {'; '.join(found)}." if found else ""
+
+
 def _energy(f: Functions) -> Program:
     crossed = orthogonality.arms(f.tree, f.dag, f.q, f.v)
     kinetic, potential = orthogonality.energy(f.tree, f.dag, crossed)
@@ -294,6 +306,7 @@ def _energy(f: Functions) -> Program:
     if f.exchange is not None:
         entries = (*entries, f.exchange.energy())
         about += " The third is what scalar networks store, heat left out."
+    about += energy_remark(f.model, f.tree.network)
     result = Result("E", (len(entries),), entries, "kinetic and potential energy (J)")
     return f.program("energy", about, ("q", "v"), (result,))
 

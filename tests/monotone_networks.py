@@ -175,14 +175,22 @@ class _Drawing:
 
     def vertex(self, potential: float | None = None) -> str:
         name = f"n{len(self.potential)}"
-        self.potential[name] = self.r.uniform(-1, 1) * self.volts if potential is None else potential
+        self.potential[name] = (
+            self.r.uniform(-1, 1) * self.volts if potential is None else potential
+        )
         return name
 
     def x(self, ends: tuple[str, str]) -> float:
         return self.potential[ends[0]] - self.potential[ends[1]]
 
-    def edge(self, letter: str, ends: tuple[str, str], y: float, slopes: tuple[float, float],
-             add: Callable[[Model, str], None]) -> None:
+    def edge(
+        self,
+        letter: str,
+        ends: tuple[str, str],
+        y: float,
+        slopes: tuple[float, float],
+        add: Callable[[Model, str], None],
+    ) -> None:
         name = self.name(letter)
         self.drawn.edges.append(Edge(name, ends, self.x(ends), y, *slopes, lambda m: add(m, name)))
 
@@ -197,12 +205,14 @@ class _Drawing:
         if kind < 0.6:
             self.drawn.inputs[-1] = value
             return u
-        curve, number = r.choice((
-            (f"abs({u})", abs(given)),
-            (f"max({u}, 0.3)", max(given, 0.3)),
-            (f"min(1, max(-1, {u}))", min(1, max(-1, given))),
-            (f"max(0, {u} - 1) + min(0, {u} + 1)", max(0, given - 1) + min(0, given + 1)),
-        ))
+        curve, number = r.choice(
+            (
+                (f"abs({u})", abs(given)),
+                (f"max({u}, 0.3)", max(given, 0.3)),
+                (f"min(1, max(-1, {u}))", min(1, max(-1, given))),
+                (f"max(0, {u} - 1) + min(0, {u} + 1)", max(0, given - 1) + min(0, given + 1)),
+            )
+        )
         return f"{size!r}*({curve}) + ({value - size * number!r})"
 
     def rising(self, ends: tuple[str, str]) -> None:
@@ -218,8 +228,13 @@ class _Drawing:
         else:
             return
         law = "y = " + made.text.format("x")
-        self.edge("N", ends, y, (_slope(made, x), -1.0),
-                  lambda m, name: m.element(name, ends, "electrical", law=law))
+        self.edge(
+            "N",
+            ends,
+            y,
+            (_slope(made, x), -1.0),
+            lambda m, name: m.element(name, ends, "electrical", law=law),
+        )
 
     def series(self, near: str, far: str) -> None:
         """An element whose across variable rises with its through variable, behind it another."""
@@ -236,31 +251,50 @@ class _Drawing:
         middle = self.vertex(self.potential[near] - x)
         ends = (near, middle)
         law = "x = " + made.text.format("y")
-        self.edge("Y", ends, y, (-1.0, _slope(made, y)),
-                  lambda m, name: m.element(name, ends, "electrical", law=law))
+        self.edge(
+            "Y",
+            ends,
+            y,
+            (-1.0, _slope(made, y)),
+            lambda m, name: m.element(name, ends, "electrical", law=law),
+        )
         self.any((middle, far))
 
     def resistor(self, ends: tuple[str, str]) -> None:
         value = self.volts / self.amperes * 10 ** self.r.uniform(-1.5, 1.5)
-        self.edge("R", ends, self.x(ends) / value, (1.0, -value),
-                  lambda m, name: m.resistor(name, ends, resistance=value))
+        self.edge(
+            "R",
+            ends,
+            self.x(ends) / value,
+            (1.0, -value),
+            lambda m, name: m.resistor(name, ends, resistance=value),
+        )
 
     def voltage(self, ends: tuple[str, str]) -> None:
         text = self.source(self.x(ends))
-        self.edge("V", ends, self.r.uniform(-1, 1) * self.amperes, (1.0, 0.0),
-                  lambda m, name: m.voltage_source(name, ends, voltage=text))
+        self.edge(
+            "V",
+            ends,
+            self.r.uniform(-1, 1) * self.amperes,
+            (1.0, 0.0),
+            lambda m, name: m.voltage_source(name, ends, voltage=text),
+        )
 
     def capacitor(self, ends: tuple[str, str]) -> None:
         name = self.name("C")
         self.drawn.state[f"v_{name}"] = self.x(ends)
-        self.edge("C", ends, self.r.uniform(-1, 1) * self.amperes, (1.0, 0.0),
-                  lambda m, name: m.capacitor(name, ends, capacitance=1e-3))
+        self.edge(
+            "C",
+            ends,
+            self.r.uniform(-1, 1) * self.amperes,
+            (1.0, 0.0),
+            lambda m, name: m.capacitor(name, ends, capacitance=1e-3),
+        )
 
     def inductor(self, ends: tuple[str, str]) -> None:
         name, y = self.name("L"), self.r.uniform(-1, 1) * self.amperes
         self.drawn.state[f"i_{name}"] = y
-        self.edge("L", ends, y, (0.0, 1.0),
-                  lambda m, name: m.inductor(name, ends, inductance=1e-3))
+        self.edge("L", ends, y, (0.0, 1.0), lambda m, name: m.inductor(name, ends, inductance=1e-3))
 
     def diode(self, ends: tuple[str, str]) -> None:
         saturation, voltage = 10 ** self.r.uniform(-14, -6), self.r.choice((0.02585, 0.05))
@@ -268,8 +302,13 @@ class _Drawing:
         if x > 60 or saturation * math.exp(x) > 100 * self.amperes:
             return
         grown = math.exp(x)
-        self.edge("D", ends, saturation * (grown - 1), (saturation * grown / voltage, -1.0),
-                  lambda m, name: m.diode(name, ends, saturation=saturation, voltage=voltage))
+        self.edge(
+            "D",
+            ends,
+            saturation * (grown - 1),
+            (saturation * grown / voltage, -1.0),
+            lambda m, name: m.diode(name, ends, saturation=saturation, voltage=voltage),
+        )
 
     def stage(self, near: str) -> None:
         """An amplifier: its input between two resistors, its output limited."""
@@ -283,11 +322,21 @@ class _Drawing:
         self.resistor((near, inside))
         self.resistor((output, inside))
         sense = self.name("S")
-        self.edge("S", (inside, GROUND), 0.0, (0.0, 1.0),
-                  lambda m, name: m.conductance(name, (inside, GROUND), conductance=0))
+        self.edge(
+            "S",
+            (inside, GROUND),
+            0.0,
+            (0.0, 1.0),
+            lambda m, name: m.conductance(name, (inside, GROUND), conductance=0),
+        )
         law = f"min({limit!r}, max({-limit!r}, {-gain!r}*across({sense})))"
-        self.edge("A", (output, GROUND), r.uniform(-1, 1) * self.amperes, (1.0, 0.0),
-                  lambda m, name: m.voltage_source(name, (output, GROUND), voltage=law))
+        self.edge(
+            "A",
+            (output, GROUND),
+            r.uniform(-1, 1) * self.amperes,
+            (1.0, 0.0),
+            lambda m, name: m.voltage_source(name, (output, GROUND), voltage=law),
+        )
         self.any((output, near))
 
     def any(self, ends: tuple[str, str]) -> None:
@@ -309,8 +358,13 @@ class _Drawing:
             if vertex == GROUND:
                 continue
             text, ends = self.source(-flow), (vertex, GROUND)
-            self.edge("J", ends, -flow, (0.0, 1.0),
-                      lambda m, name, ends=ends, text=text: m.current_source(name, ends, current=text))
+            self.edge(
+                "J",
+                ends,
+                -flow,
+                (0.0, 1.0),
+                lambda m, name, ends=ends, text=text: m.current_source(name, ends, current=text),
+            )
         return self.drawn
 
 
@@ -357,6 +411,8 @@ def draw(seed: int) -> Drawn:
         if r.random() < 0.2:
             drawing.stage(r.choice(vertices))
         drawn = drawing.balanced()
-        if all(math.isfinite(v) for v in drawn.expected()) and _regular(drawn, drawing.volts, drawing.amperes):
+        if all(math.isfinite(v) for v in drawn.expected()) and _regular(
+            drawn, drawing.volts, drawing.amperes
+        ):
             return drawn
     raise AssertionError("nothing regular was drawn")

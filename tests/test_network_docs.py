@@ -683,16 +683,32 @@ def test_every_case_is_on_the_page(messages: dict[str, str]) -> None:
 # ---- what is not possible
 
 
-def test_energies_that_are_not_known(tmp_path: Path) -> None:
-    text = 'name = "unknown"\n[capacitor.C]\nbetween = ["a", "ground"]\ncharge = "x + x**3"\n'
+def test_energies_of_charges_and_forces_are_integrated(tmp_path: Path) -> None:
+    text = 'name = "known"\n[capacitor.C]\nbetween = ["a", "ground"]\ncharge = "x + x**3"\n'
     text += '[inductor.L]\nbetween = ["a", "ground"]\nflux = "y + y**3"\n'
     text += '[mass.m]\nbetween = ["x", "ground"]\nmass = 2\n'
     text += '[translational_spring.k]\nbetween = ["x", "ground"]\nforce = "x**3"\n'
-    text += '[element.E]\ndomain = "translation_1d"\nbetween = ["x", "ground"]\n'
-    text += 'law = "y = s"\nrate = "x - s"\n'
-    assert states(text) == ["v_C", "i_L", "v_m", "x_k", "s_E"]
+    assert states(text) == ["v_C", "i_L", "v_m", "x_k"]
     files = render(modelfile.parse(text.encode(), "model.toml"), languages=["python"])
-    energy = load(files, "unknown", tmp_path).energy([], [1.0, 2.0, 3.0, 4.0, 5.0])
+    assert "Not known" not in files["known.py"]
+    energy = load(files, "known", tmp_path).energy([], [1.0, 2.0, 3.0, 4.0])
+    # x²/2 + 3x⁴/4 of x = 1 and of 2, 9 of the mass, 4⁴/4 of the spring
+    assert energy.tolist() == [0, 0, 1.25 + 14 + 9 + 64]
+
+
+def test_energies_that_are_not_known(tmp_path: Path) -> None:
+    text = 'name = "unknown"\n[capacitor.C]\nbetween = ["a", "ground"]\ncharge = "x*exp(x)"\n'
+    text += '[mass.m]\nbetween = ["x", "ground"]\nmass = 2\n'
+    text += '[element.E]\ndomain = "translation_1d"\nbetween = ["x", "ground"]\n'
+    text += (
+        'law = "y = s"\nrate = "x - s"\n[resistor.R]\nbetween = ["a", "ground"]\nresistance = 1\n'
+    )
+    assert states(text) == ["v_C", "v_m", "s_E"]
+    files = render(modelfile.parse(text.encode(), "model.toml"))
+    for name in ("unknown.py", "unknown.h"):
+        said = " ".join(files[name].replace("*", " ").split())
+        assert "Not known, and left out: the energy of capacitor C; element E." in said
+    energy = load(files, "unknown", tmp_path).energy([], [1.0, 3.0, 5.0])
     assert energy.tolist() == [0, 0, 9]
 
 

@@ -21,6 +21,8 @@ class Spring(Element):
         stiffness: N/m, or N m/rad in a revolute joint.
         length: x of the unstrained spring.
         force: instead of `stiffness`, an expression in x, the stretch beyond `length`, and v, its rate.
+        energy: its potential energy (J), an expression in x whose derivative is the force at v = 0, where that
+            cannot be integrated.
 
     Example:
         >>> Spring("strut", ("ground", "cart"), stiffness=200.0, length=0.4).kind
@@ -30,8 +32,9 @@ class Spring(Element):
     stiffness: Any = None
     length: Any = 0
     force: Any = None
+    energy: Any = None
     kind = "spring"
-    laws = ("force",)
+    laws = ("force", "energy")
     needs = (("stiffness", "force"),)
 
     def through(self, algebra: Algebra, x: Scalar, v: Scalar, resolve: Resolve) -> Scalar:
@@ -42,7 +45,7 @@ class Spring(Element):
         return resolve(self.stiffness) * stretch
 
     def potential(self, algebra: Algebra, x: Scalar, resolve: Resolve) -> Scalar:
-        """Half the stiffness times the stretch squared; none is known for a law."""
+        """Half the stiffness times the stretch squared; that of a law is integrated (`potentials`)."""
         if self.force is not None:
             return 0
         stretch = x - resolve(self.length)

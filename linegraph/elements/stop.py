@@ -54,3 +54,22 @@ class Stop(Element):
         contact = (1 + depth / root) / 2
         depth_rounded = (depth + root) / 2
         return resolve(self.stiffness) * depth_rounded + resolve(self.damping) * (contact * rate)
+
+    def potential(self, algebra: Algebra, x: Scalar, resolve: Resolve) -> Scalar:
+        """What the rounded springs hold: zero at the limits themselves."""
+        total: Scalar = 0
+        if self.upper is not None:
+            total = total + self._held(algebra, x - resolve(self.upper), resolve)
+        if self.lower is not None:
+            total = total + self._held(algebra, resolve(self.lower) - x, resolve)
+        return total
+
+    def _held(self, algebra: Algebra, depth: Scalar, resolve: Resolve) -> Scalar:
+        """The integral of ``stiffness p(d)``: ``(d² + d r + width² asinh(d/width)) / 4`` with r = sqrt(d² + width²)."""
+        width = resolve(self.width)
+        root = algebra.sqrt(depth * depth + width * width)
+        size = algebra.function("abs", depth)
+        # asinh, of the size: for a negative argument the sum would cancel
+        grown = algebra.function("log", (size + root) / width)
+        turned = algebra.function("sign", depth) * grown
+        return resolve(self.stiffness) * ((depth * (depth + root) + width * width * turned) / 4)

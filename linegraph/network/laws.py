@@ -21,7 +21,7 @@ from linegraph.domains import DOMAINS
 from linegraph.errors import ModelError
 from linegraph.expression import Dag, Node
 from linegraph.formula import variable_of
-from linegraph.network.stored import changing
+from linegraph.network.stored import changing, coenergy_of, own_energy_of
 from linegraph.parameters import names_in, resolver, valued
 from linegraph.program import Quantity
 from linegraph.residues import CONSTANT
@@ -86,7 +86,7 @@ class Laws:
     Attributes:
         energy: stored by each component; in powers of what is kept only where a co-energy is known.
         heat: the power each component dissipates.
-        charged: components whose charges are given as such, and no energy.
+        unknown: components whose energy is not known: of a charge or a force that no rule integrates.
         driven: stores whose value the time or inputs change, and the names of these.
     """
 
@@ -98,7 +98,7 @@ class Laws:
     own: list[Own] = field(default_factory=list)
     energy: dict[str, Scalar] = field(default_factory=dict)
     heat: dict[str, Scalar] = field(default_factory=dict)
-    charged: set[str] = field(default_factory=set)
+    unknown: set[str] = field(default_factory=set)
     driven: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
 
@@ -153,12 +153,14 @@ def _require_names(component: Component, names: _Names) -> None:
 def _evaluate(component: Component, at: At, laws: Laws) -> None:
     """One component's statics, stores, states, energy and heat."""
     calculus = laws.calculus
-    work = component.kept_coenergy(at)
     charges = component.charges(at)
+    work = (
+        component.kept_coenergy(at)
+        if charges is None
+        else coenergy_of(component, at, laws, charges)
+    )
     zeros = component.laws(at)
-    if charges is not None:
-        laws.charged.add(component.name)
-    own_energy = component.own_energy(at)
+    own_energy = own_energy_of(component, at, laws)
     driven = changing(component, at.branches, calculus, (work, own_energy, *(charges or ())))
     if driven:
         laws.driven[component.name] = driven
@@ -192,7 +194,7 @@ def _evaluate(component: Component, at: At, laws: Laws) -> None:
         quantity = Quantity(f"{letter}_{component.name}", unit, f"{about} of {component.name}")
         laws.own.append(Own(key_of(at.x), quantity, at.X[-1]))
     # of charges in proportion to what is kept energy and co-energy are the same
-    energy = work if quadratic or charges is not None else stored - work
+    energy = 0 if component.name in laws.unknown else work if quadratic else stored - work
     laws.energy[component.name] = own_energy + energy
     laws.heat[component.name] = component.dissipation(at)
 

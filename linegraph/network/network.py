@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from linegraph.topology import Topology
     from linegraph.vector import Scalar
 
-SPRINGS = ("translational_spring", "rotational_spring")
 INPUTS = ("u", "du", "ddu")
 RATE, SHAFT_RATE = "dz", "dw"
 """Symbols of the rates of states, by their place, and of what edges in mechanics accelerate with."""
@@ -272,11 +271,10 @@ class Network:
 
     @cached_property
     def unknown(self) -> frozenset[str]:
-        """The components that store by a charge or a law of a state, whose energy is not known."""
+        """The components whose energy is not known: elements with a state, and stores that no rule integrates."""
         kinds = {branch.component for branch in self.branches}
         lawless = {c.name for c in kinds if getattr(c, "rate", None) is not None}
-        lawless |= {c.name for c in kinds if c.kind in SPRINGS and c.force is not None}  # type: ignore[attr-defined]
-        return frozenset(lawless | self.laws.charged)
+        return frozenset(lawless | self.laws.unknown)
 
     @cached_property
     def powerful(self) -> frozenset[str]:

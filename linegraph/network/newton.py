@@ -56,7 +56,6 @@ PROBE_EASE, PROBE = 1e-8, 1e-6
 solution is looked for."""
 
 
-
 @dataclass(frozen=True)
 class _Point:
     """The loop at given unknowns: residuals, their derivatives, and the sizes of their terms."""
@@ -82,6 +81,11 @@ class _Point:
     def solved(self) -> bool:
         """Whether it is a solution."""
         return self.gap == 0 or (self.rounding and self.gap < math.inf)
+
+    @property
+    def steep(self) -> bool:
+        """Whether a slope is infinite, as that of a root at zero is: nothing is flat there."""
+        return not all(math.isfinite(x) for row in self.jacobian for x in row)
 
     def step(self, right: Vector) -> Vector | None:
         """What solves ``jacobian step = right``; None where it is singular."""
@@ -117,9 +121,7 @@ def solved(network: Network, known: Callable[[Symbol], float]) -> Vector:
     raise ModelError("model", "the algebraic loop of its network has no solution here")
 
 
-def _evaluation(
-    network: Network, known: Callable[[Symbol], float]
-) -> Evaluate:
+def _evaluation(network: Network, known: Callable[[Symbol], float]) -> Evaluate:
     """The loop as a function of its unknowns and of the resistance and the conductance at its laws."""
     size = len(network.loop)
     given = {symbol: known(symbol) for symbol in network.loop_needs}
@@ -142,9 +144,7 @@ def _evaluation(
     return evaluate
 
 
-def _run(
-    evaluate: Evaluate, x: Vector, series: float, parallel: float
-) -> _Point:
+def _run(evaluate: Evaluate, x: Vector, series: float, parallel: float) -> _Point:
     """Newton's method with halved steps, as far as it comes."""
     at = evaluate(x, series, parallel)
     eased = series > 0
@@ -176,15 +176,14 @@ def _nearer(
     for _ in range(MOST_HALVINGS):
         ahead = [a + length * b for a, b in zip(at.x, step, strict=True)]
         found = evaluate(ahead, series, parallel)
-        if found.gap <= (1 - DECREASE * length) * at.gap:
+        usable = found.solved or not found.steep
+        if usable and found.gap <= (1 - DECREASE * length) * at.gap:
             return found
         length /= 2
     return None
 
 
-def _followed(
-    evaluate: Evaluate, size: int, resistance: float
-) -> _Point:
+def _followed(evaluate: Evaluate, size: int, resistance: float) -> _Point:
     """The solution that is reached as resistances at the laws vanish."""
     x = [NEAR * (1 + i / 8) for i in range(size)]
     ease = FIRST
@@ -203,7 +202,7 @@ def _only(evaluate: Evaluate, found: _Point) -> Vector:
     Raises:
         ModelError: it is not the only one.
     """
-    if found.step(found.residual) is not None:
+    if found.steep or found.step(found.residual) is not None:
         return found.x
     eased = evaluate(found.x, PROBE_EASE, PROBE_EASE)
     flat = eased.step([size if size > 0 else 1.0 for size in found.sizes])

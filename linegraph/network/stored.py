@@ -1,4 +1,4 @@
-"""What the value of a store may depend on, so that the energy it holds comes from somewhere.
+"""What a store holds, and what its value may depend on, so that the energy comes from somewhere.
 
 The other variable of a store is the rate of a charge, ``d/dt ∂W'/∂kept``. If W' depends on anything else, a
 force ``∂W'/∂x`` belongs to that: a capacitor pulls its plate. A transducer has a port for it. Where there is
@@ -10,7 +10,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.components.base import PLACES
+from linegraph.antiderivative import antiderivative
+from linegraph.components.base import ACROSS, PLACES
+from linegraph.components.stores import Spring1D
 from linegraph.errors import ModelError
 from linegraph.formula import Formula, variable_of
 from linegraph.parameters import names_in
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from linegraph.components.base import Component
     from linegraph.differentiation import Calculus, Symbol
     from linegraph.network.edges import Branch
+    from linegraph.network.laws import At, Laws
     from linegraph.vector import Scalar
 
 TRANSDUCERS = {
@@ -62,6 +65,28 @@ def changing(
     return tuple(found)
 
 
+def coenergy_of(component: Component, at: At, laws: Laws, charges: Sequence[Scalar]) -> Scalar:
+    """The co-energy of a store by its charge, ``∫ Q dk``; 0 where no rule gives it."""
+    kept: Any = (at.X if at.branches[0].kept == ACROSS else at.Y)[0]
+    found = antiderivative(laws.calculus, charges[0], (kept.a, kept.b))
+    if found is None or len(charges) > 1:
+        laws.unknown.add(component.name)
+        return 0
+    return found
+
+
+def own_energy_of(component: Component, at: At, laws: Laws) -> Scalar:
+    """What a component stores in states of its own; of a spring by its force ``∫ Y dx``."""
+    if not isinstance(component, Spring1D) or component.force is None:
+        return component.own_energy(at)
+    x: Any = at.states["x"]
+    found = antiderivative(laws.calculus, at.value(component.force, x=x), (x.a, x.b))
+    if found is None:
+        laws.unknown.add(component.name)
+        return 0
+    return found
+
+
 def _named(symbol: Symbol) -> str:
     kind, place = symbol
     return f"{'through' if kind == 'Y' else 'across'}({place})"
@@ -74,7 +99,9 @@ def _moved(component: Component, name: str) -> str:
     )
     other = TRANSDUCERS.get(component.kind)
     if other is None:
-        return f"{problem}. Let the value depend on parameters, inputs, t and its own variable alone"
+        return (
+            f"{problem}. Let the value depend on parameters, inputs, t and its own variable alone"
+        )
     return f"{problem}. Use {other}: its value depends on its displacement x, and it pushes"
 
 
