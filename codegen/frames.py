@@ -83,6 +83,8 @@ FUNCTIONS = {
     "eliminate": ("eliminate",),
     "large": ("too_large",),
     "norm": ("size_of",),
+    "pure": ("pure",),
+    "largest": ("largest_of",),
     "rounding": ("is_rounding",),
     "backward": ("backward",),
     "constrained": ("constrained",),
@@ -105,15 +107,20 @@ def of_helpers(counts: Mapping[str, int]) -> dict[str, Frame]:
         "size_of": Frame(doubles=2, ints=1, parameters=2, statements=6),
         "is_rounding": Frame(ints=2, parameters=3, statements=5),
         "backward": Frame(ints=4, parameters=7),
-        "least_norm": Frame(doubles=4 + c * c, ints=12, pointers=1, parameters=6),
+        "pure": Frame(doubles=2, ints=3, parameters=6),
+        "largest_of": Frame(doubles=2, ints=1, parameters=3, statements=5),
+        "least_norm": Frame(doubles=4 + c * c, ints=14, pointers=1, parameters=7),
         "constrained": Frame(
-            doubles=8 + (4 + c) * n + 2 * n * n + 2 * c,
+            doubles=10 + 4 * (n + c) + n * c + 2 * n * n,
             ints=37 + n + c,
-            parameters=11,
-            calls={*within, "least_norm"},
+            parameters=16,
+            calls={*within, "pure", "largest_of", "size_of", "least_norm"},
         ),
         "determined": Frame(
-            doubles=(c + n) * n + 2 * n, ints=10 + c + 2 * n, parameters=6, calls=within
+            doubles=1 + (c + n) * (n + 1) + 2 * n,
+            ints=12 + c + 2 * n,
+            parameters=9,
+            calls={*within, "pure", "largest_of"},
         ),
         "unit": Frame(doubles=1, ints=1, pointers=1, parameters=1),
         "sincos": Frame(doubles=13, ints=1, parameters=3),
@@ -139,19 +146,18 @@ _ROUTINES: dict[str, Made] = {
     "after_dynamics": lambda n, _: Frame(doubles=n["NV"] + 1 + n["NC"], ints=1),
     "rhs": lambda n, _: Frame(doubles=n["NC"]),
     "constrained_dynamics": lambda n, _: Frame(
-        doubles=n["NV"] * (n["NV"] + n["NC"] + 2) + 2 * n["NC"], ints=3
+        doubles=17 + n["NV"] * (n["NV"] + 2 * n["NC"] + 6) + 9 * n["NC"] + n["NP"] + 2 * n["NQ"],
+        ints=14,
     ),
-    "reduction": lambda n, _: Frame(
-        doubles=n["NC"] * (n["NV"] + 1) + (n["NV"] + n["NC"] + n["NI"]) * (n["NI"] + 1), ints=4
-    ),
+    "reduction": lambda n, _: _of_reduction(n),
     "reduced_equations": lambda n, _: Frame(doubles=1 + n["NV"] * (n["NV"] + n["NI"] + 2), ints=9),
     "complete": lambda n, _: Frame(
-        doubles=3 + 2 * n["NQ"] + n["NV"] * (n["NC"] + 2) + 2 * n["NC"] + n["NI"] + n["NP"],
-        ints=10,
+        doubles=4 + 2 * n["NQ"] + n["NV"] * (n["NC"] + 3) + 3 * n["NC"] + n["NI"] + n["NP"],
+        ints=11,
     ),
     "project": lambda n, _: Frame(
-        doubles=4 + 3 * n["NQ"] + n["NV"] * (n["NV"] + n["NC"] + 2) + 2 * n["NC"] + n["NP"],
-        ints=10,
+        doubles=5 + 3 * n["NQ"] + n["NV"] * (n["NV"] + n["NC"] + 3) + 3 * n["NC"] + n["NP"],
+        ints=11,
     ),
     "linearization": lambda n, details: _of_linearization(n, len(details["d_at"])),  # type: ignore[arg-type]
     "newton": lambda _, details: _of_newton(int(details["size"])),  # type: ignore[call-overload]
@@ -177,16 +183,22 @@ def of_routine(
     return frame
 
 
+def _of_reduction(n: Counts) -> Frame:
+    v, c, i = n["NV"], n["NC"], n["NI"]
+    sides = (v + c + i) * (2 * i + 3)
+    return Frame(doubles=14 + 2 * c * v + 4 * c + v + sides + n["NP"] + 2 * n["NQ"], ints=16)
+
+
 def _of_linearization(n: Counts, free: int) -> Frame:
     v, c, i, t = n["NV"], n["NC"], n["NI"], n["NT"]
     width, sides = t + v + n["NU"], n["NDX"] + n["NU"]
-    vectors = 3 * v + 2 * c + width + 2 * v + c
+    vectors = 6 * v + 4 * c + width
     matrices = v * v + c * v + (v + c) * width + c * t + t * t + v * i
     return Frame(
-        doubles=1 + vectors + matrices + (v + c + free) * free + (v + c + i) * free + i * sides,
+        doubles=5 + vectors + matrices + (v + c + free) * free + (v + c + i) * free + i * sides,
         ints=21,
     )
 
 
 def _of_newton(size: int) -> Frame:
-    return Frame(doubles=7 + size * size + 6 * size, ints=24 + 2 * size)
+    return Frame(doubles=8 + size * size + 6 * size, ints=21 + 2 * size)
