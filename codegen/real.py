@@ -31,6 +31,7 @@ _DOUBLE = {
     "still": "1e-15",
     "closed": f"{CLOSED:g}",
     "accurate": f"{ACCURATE:g}",
+    "far": "1e-2",
     "any": "1e300",
     "large": "1e100",
     "slack": "1e-2",
@@ -44,6 +45,7 @@ _FLOAT = {
     "still": "5e-7",
     "closed": "2e-5",
     "accurate": "2e-2",
+    "far": "1e-2",
     "any": "1e30",
     "large": "1e30",
     "slack": "1e-2",
@@ -53,9 +55,10 @@ TOLERANCES = {"double": _DOUBLE, "float": _FLOAT}
 
 rank: entries of J that are zero; pivot: of a mass matrix, beside what it was made of; residual: beside the
 size of its terms; rounding: of a constraint; step, still: corrections that change nothing any more; closed:
-a gap of loops that is none; accurate: the relative error of accelerations that is accepted; any: more than
-anything; large: what is taken for infinite in between, so that all languages agree; slack: the part by which
-redundant constraints may contradict each other.
+a gap of loops that is none; accurate: the relative error of accelerations that is accepted; far: a gap
+beyond which a state is none of the mechanism, and not judged; any: more than anything; large: what is taken
+for infinite in between, so that all languages agree; slack: the part by which redundant constraints may
+contradict each other.
 """
 
 _FUNCTIONS = sorted({*ARITY, "fabs", "fmax", "fmin"} - {"abs", "max", "min", "sign"})
