@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 COUNT = 1000
 FEW = range(0, COUNT, 37)
 STATES = 3
-TOLERANCE = 1e-8  # measured 2e-10
+TOLERANCE = 1e-8  # measured 5e-13 over all 1000
 
 
 def drawn(rng: np.random.Generator, size: float, units: Sequence[str]) -> Any:
