@@ -117,7 +117,12 @@ def with_prologue(
     judged = _judged(twins)
     guarded = (n.index for n in live_nodes(prologue) if n.op == DIV and n.b.index in judged)
     (prologue,) = collected([replace(prologue, guarded=frozenset(guarded))])
-    reading = collected(constants.read_by(twin) for twin in twins)
+    plain = [constants.read_by(twin) for twin in twins]
+    # a sum that would compute with constants alone stays as it was
+    reading = [
+        before if _computes_constants(after) else after
+        for before, after in zip(plain, collected(plain), strict=True)
+    ]
     found: dict[str, Program | Routine] = {
         program.name: twin for program, twin in zip(given, reading, strict=True)
     }
@@ -249,6 +254,20 @@ class _Handing:
             frozenset(x.index for x in divisors if isinstance(x, Node)),
         )
         return _together([own, *inner])
+
+
+def _computes_constants(twin: Program) -> bool:
+    """Whether an operation of a function that reads the constants has nothing else to work on."""
+    known: dict[int, bool] = {}
+    for node in live_nodes(twin):
+        if node.op == SYMBOL:
+            known[node.index] = node.a == "c"
+            continue
+        operands = [x for x in (node.a, node.b) if isinstance(x, Node)]
+        known[node.index] = all(known[x.index] for x in operands)
+        if known[node.index] and node.op != NEG:
+            return True
+    return False
 
 
 def _judged(programs: Iterable[Program]) -> frozenset[int]:
