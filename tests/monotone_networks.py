@@ -1,8 +1,8 @@
 """Seeded random networks of monotone laws whose one solution is known, because it was chosen first.
 
 Potentials are drawn, then elements between them: what flows in each follows from its law, and a current
-source at every vertex takes up what is left. Every element is monotone, so that all solutions together are a convex
-set; where the equations are regular at the chosen one, there is no other [Minty 1960].
+source at every vertex takes up what is left. Every element is monotone, so that all solutions together are a
+convex set; where the equations are regular at the chosen one, there is no other [Minty 1960].
 
 A stage is an amplifier with limits and negative feedback. With its output v and its input e, the potential of
 a vertex of its own, ``v = clip(-gain e)`` and ``e = share v + rest``: one solution, because the left side of
