@@ -1,8 +1,8 @@
 """Antiderivatives of a scalar of a DAG with respect to one symbol, by exact rules; or none.
 
-What is integrated: sums; polynomials and their quotients by a power; what is homogeneous in one linear argument
-L, such as ``L |L|``, ``sign(L) sqrt(|L|)`` and ``max(L, 0)^1.5``; max, min and limits of linear ones; the elementary
-functions of a linear argument; and ``u' g(u)``. Everything else is left to the user.
+What is integrated: sums; polynomials and their quotients by a power; what is homogeneous in one linear
+argument L, such as ``L |L|``, ``sign(L) sqrt(|L|)`` and ``max(L, 0)^1.5``; max, min and limits of linear
+ones; the elementary functions of a linear argument; and ``u' g(u)``. Everything else is left to the user.
 """
 
 from __future__ import annotations
@@ -148,7 +148,7 @@ class _Rules:
         return None if self._varies(slope) or not self._residues(slope) else slope
 
     def _homogeneous(self, factors: Sequence[Node]) -> Scalar | None:
-        """f of degree p in one linear L: ``L^n``, ``|L| L``, ``max(L, 0)^1.5``, ...: ``L f / ((p + 1) L')``."""
+        """Of degree p in one linear L, as ``|L| L`` and ``max(L, 0)^1.5``: ``L f / ((p + 1) L')``."""
         found = self._linear_in(factors)
         if found is None:
             return None
@@ -269,7 +269,7 @@ class _Rules:
         return None if over else self._primitive(g.op, u, g)
 
     def _constant_ratio(self, f: Scalar, u: Scalar) -> Scalar | None:
-        """f by the slope of u, if that is constant."""
+        """A factor by the slope of u, if that is constant."""
         if not self._varies(u):
             return None
         ratio = f / self._calculus.derivative(u, self._by)

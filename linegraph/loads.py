@@ -84,7 +84,8 @@ def applied(
     what = network or (DRIVEN if driven else RESTING)
     acting = Acting(model, tree, algebra, parameters, chords, (q, v), what)
     for element in storing:
-        acting.hold(element)
+        if isinstance(element, Element):
+            acting.hold(element)
     return acting.of(found)
 
 

@@ -1,9 +1,9 @@
 """The potential energy of force elements: which part of a law has one, and what it is.
 
 The tension at rest, with inputs at zero, is what may have a potential: ``f(x, 0)``. What vanishes with the
-rates and the inputs takes or gives power and stores none. Where f(x, 0) depends on x and parameters alone, its
-antiderivative is the energy; where no rule gives one, or other coordinates are in it, the energy is not known,
-unless the user gives it: then its derivative with respect to x is compared with f(x, 0).
+rates and the inputs takes or gives power and stores none. Where f(x, 0) depends on x and parameters alone,
+its antiderivative is the energy. Where no rule gives one, or other coordinates are in it, the energy is not
+known, unless the user gives it: then its derivative with respect to x is compared with f(x, 0).
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from linegraph.residues import Residues
 
 if TYPE_CHECKING:
     from linegraph.algebra import Algebra
+    from linegraph.elements import Load
     from linegraph.elements.base import Resolve
     from linegraph.model import Model
     from linegraph.vector import Scalar
@@ -63,7 +64,7 @@ def stored(model: Model, element: Element, algebra: Algebra, x: Scalar, resolve:
     return Replay(algebra, symbol)(found)
 
 
-def holds(model: Model, element: Element) -> bool:
+def holds(model: Model, element: Element | Load) -> bool:
     """Whether an element that inputs drive has a potential energy: a law with a part that they do not."""
     if not isinstance(element, (Law, Spring)):
         return False
@@ -124,13 +125,13 @@ def require_energies(model: Model) -> None:
             raise ModelError(who, problem)
 
 
-def _law(element: Element) -> Any:
+def _law(element: Element | Load) -> Any:
     """The expression of an element's tension; of a linear spring its stiffness."""
     force = getattr(element, "force", None)
     return element.stiffness if force is None and isinstance(element, Spring) else force
 
 
-def _potential(model: Model, element: Element) -> Scalar | None:
+def _potential(model: Model, element: Element | Load) -> Scalar | None:
     """The energy over the DAG of a trace; None of an element that knows its own.
 
     Raises:

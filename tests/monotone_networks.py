@@ -1,8 +1,8 @@
 """Seeded random networks of monotone laws whose one solution is known, because it was chosen first.
 
-Potentials are drawn, then elements between them: what flows in each follows from its law, and a current source
-at every vertex takes up what is left. Every element is monotone, so that all solutions together are a convex
-set; where the equations are regular at the chosen one, there is no other [Minty 1960].
+Potentials are drawn, then elements between them: what flows in each follows from its law, and a current
+source at every vertex takes up what is left. Every element is monotone, so that all solutions together are a
+convex set; where the equations are regular at the chosen one, there is no other [Minty 1960].
 
 A stage is an amplifier with limits and negative feedback. With its output v and its input e, the potential of
 a vertex of its own, ``v = clip(-gain e)`` and ``e = share v + rest``: one solution, because the left side of
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 GROUND = "ground"
 REGULAR = 1e-7
-"""The least singular value of the equations in the network's own units, relative to the largest: the solution is one."""
+"""The least singular value of the equations in the network's own units, relative to the largest."""
 
 
 class Curve(NamedTuple):
@@ -114,7 +114,6 @@ CURVES = (
     square,
     root,
 )
-STEEP = ("saturation", "exponential", "root", "cube", "square", "rectifier")
 
 
 @dataclass

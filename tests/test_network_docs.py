@@ -602,6 +602,12 @@ REFUSED = {
     "cutset": SOURCE + LOADED + '[current_source.i]\nbetween = ["ground", "x"]\ncurrent = 1\n',
     "repeated": AGAINST + '[opamp.A]\nbetween = ["b", "ground"]\noutput = ["out", "ground"]\n',
     "open op-amp": OPAMP,
+    "store on a joint": HINGE
+    + SOURCE
+    + '[capacitor.C]\nbetween = ["a", "ground"]\ncapacitance = "2 + hinge"\n',
+    "store on an edge": SOURCE
+    + LOADED
+    + '[capacitor.C2]\nbetween = ["b", "ground"]\ncapacitance = "2 + across(R)**2"\n',
     "third derivative": SOURCE
     + '[capacitor.C]\nbetween = ["a", "ground"]\ncapacitance = 1\n'
     + '[current_source.i]\nbetween = ["ground", "b"]\ncurrent = "through(C)"\n'

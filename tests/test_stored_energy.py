@@ -17,7 +17,6 @@ from linegraph.expression import Dag
 from linegraph.modelfile import parse
 from linegraph.parameters import resolver
 
-
 INTEGRATED = (
     "100*x + 7*x**3",
     "k*(x - a)**3",
@@ -65,7 +64,7 @@ def traced(text: str) -> tuple[Calculus, Any, Any]:
 
 @pytest.mark.parametrize("text", INTEGRATED)
 def test_antiderivatives_are_integrals(text: str) -> None:
-    calculus, f, found = traced(text)
+    _calculus, f, found = traced(text)
     assert found is not None
     replay = [
         lambda x, y=y: Replay(

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 class Law(Element):
     """An element given by `through`, an expression in x, v, t, coordinates, inputs and parameters.
 
-    Gravity between two bodies, an actuator with its own characteristic, a cable that only pulls. Of forces that
-    depend on x and parameters alone the potential energy is found by integration, where rules are known.
+    Gravity between two bodies, an actuator with its own characteristic, a cable that only pulls. Of forces
+    that depend on x and parameters alone the potential energy is found by integration, where rules are known.
 
     Attributes:
         force: the tension (N, or N m in a revolute joint).
-        energy: its potential energy (J), an expression in x whose derivative is the force at v = 0, where that
-            cannot be integrated.
+        energy: its potential energy (J), an expression in x whose derivative is the force at v = 0, where
+            that cannot be integrated.
 
     Example:
         >>> Law("pull", ("earth", "moon"), force="G*m1*m2/x**2").kind

@@ -21,8 +21,8 @@ class Spring(Element):
         stiffness: N/m, or N m/rad in a revolute joint.
         length: x of the unstrained spring.
         force: instead of `stiffness`, an expression in x, the stretch beyond `length`, and v, its rate.
-        energy: its potential energy (J), an expression in x whose derivative is the force at v = 0, where that
-            cannot be integrated.
+        energy: its potential energy (J), an expression in x whose derivative is the force at v = 0, where
+            that cannot be integrated.
 
     Example:
         >>> Spring("strut", ("ground", "cart"), stiffness=200.0, length=0.4).kind

@@ -65,7 +65,7 @@ class Stop(Element):
         return total
 
     def _held(self, algebra: Algebra, depth: Scalar, resolve: Resolve) -> Scalar:
-        """The integral of ``stiffness p(d)``: ``(d² + d r + width² asinh(d/width)) / 4`` with r = sqrt(d² + width²)."""
+        """The integral of p: ``(d² + d r + width² asinh(d/width)) / 4`` with ``r² = d² + width²``."""
         width = resolve(self.width)
         root = algebra.sqrt(depth * depth + width * width)
         size = algebra.function("abs", depth)

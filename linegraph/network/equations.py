@@ -335,8 +335,10 @@ class _Derivation:
         for edge, on in self._selection.dependent.items():
             what = f"follows from {', '.join(on)}" if on else "is given by sources"
             found.append(f"{edge} stores, but is no state of its own: it {what}")
-        for store, names in self._laws.driven.items():
-            found.append(f"{' and '.join(names)} change what {store} stores, and do work on it")
+        for store, changed_by in self._laws.driven.items():
+            found.append(
+                f"{' and '.join(changed_by)} change what {store} stores, and do work on it"
+            )
         for name, order in rates.items():
             more = f" and {name}_acceleration" * (order > 1)
             found.append(

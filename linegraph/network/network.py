@@ -271,7 +271,7 @@ class Network:
 
     @cached_property
     def unknown(self) -> frozenset[str]:
-        """The components whose energy is not known: elements with a state, and stores that no rule integrates."""
+        """The components whose energy is not known: elements with a state, stores that no rule integrates."""
         kinds = {branch.component for branch in self.branches}
         lawless = {c.name for c in kinds if getattr(c, "rate", None) is not None}
         return frozenset(lawless | self.laws.unknown)

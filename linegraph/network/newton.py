@@ -52,8 +52,8 @@ ROUNDING = 1e-13
 """A residual below this fraction of its terms is zero."""
 
 PROBE_EASE, PROBE = 1e-8, 1e-6
-"""The resistances by which a singular Jacobian is made regular, and how far along its flattest direction another
-solution is looked for."""
+"""The resistances by which a singular Jacobian is made regular, and how far along its flattest direction
+another solution is looked for."""
 
 
 @dataclass(frozen=True)

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from linegraph.vector import Scalar
 
 DUAL, LOOP, EASE = "d", "loop", "ease"
-"""Symbols of variables that only rates determine, of the unknowns of algebraic loops, and of the resistance in
-series and the conductance in parallel that make a loop easier to solve; both are zero at its solution."""
+"""Symbols of variables that only rates determine, of the unknowns of algebraic loops, and of the resistance
+in series and the conductance in parallel that make a loop easier to solve; both are zero at its solution."""
 
 
 @dataclass

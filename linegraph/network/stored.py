@@ -107,8 +107,8 @@ def _moved(component: Component, name: str) -> str:
 
 def _foreign(component: Component, name: str) -> str:
     return (
-        f"stores energy, and its value names {name}: that edge would have to take part of the power, and does "
-        "not; energy would come from nothing. Let the value depend on parameters, inputs, t and its own "
+        f"stores energy, and its value names {name}: that edge would have to take part of the power, and "
+        "does not; energy would come from nothing. Let the value depend on parameters, inputs, t and its own "
         "variable alone"
     )
 
