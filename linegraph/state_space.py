@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from math import gcd
 from typing import TYPE_CHECKING, Any
 
@@ -121,7 +122,9 @@ class StateSpace:
         matrices = []
         for matrix in (space.A, space.B, space.C, space.D):
             # letters may be symbols with assumptions
-            found = matrix.subs({x: values[x.name] for x in matrix.free_symbols if x.name in values})
+            found = matrix.subs(
+                {x: values[x.name] for x in matrix.free_symbols if x.name in values}
+            )
             missing = sorted(symbol.name for symbol in found.free_symbols)
             if missing:
                 raise ModelError("state space", f"no value is known of {', '.join(missing)}")
@@ -152,7 +155,7 @@ class _Response:
     def __init__(self, space: StateSpace, s: Expr) -> None:
         self.space, self.s = space, s
         self.simplifier = Simplifier(_named)
-        self.simplifier.ring.budget = self.simplifier.budget
+        self.simplifier.start()
         self.letters = Letters(self.simplifier, {})
         self.place = _place(self.letters.value(s))
 
@@ -195,7 +198,7 @@ class _Response:
         leading = powers[max(powers)]
         scale: Any = 1
         if self.simplifier.ring.inexact:
-            scale = max(abs(k) for k in leading.values())
+            scale = max(abs(Fraction(k)) for k in leading.values())
         if 2 * sum(k < 0 for k in leading.values()) > len(leading):
             scale = -scale
         return self._polynomial(above, scale) / self._polynomial(below, scale)
@@ -231,4 +234,4 @@ def _place(x: Any) -> int:
     """The generator that a symbol is."""
     (term,) = x.terms
     ((place, _),) = x.ring.exponents(term)
-    return place
+    return int(place)
