@@ -121,6 +121,9 @@ def _at(symbolic: Symbolic, values: Mapping[Symbol, Expr]) -> AtState:
         symbol: e.xreplace({x: sympy.Symbol(x.name) for x in e.free_symbols if x.name in own})
         for symbol, e in values.items()
     }
+    letters = {x.name for e in plain.values() for x in e.free_symbols}
+    for name in sorted({*own, *letters}):  # the order that sums are grouped in
+        simplifier.ring.symbol("p", name)
     chosen = (_independent(symbolic), _rank(symbolic)) if symbolic.tree.closed else ()
     return AtState(symbolic.motion, simplifier, symbolic.names, plain, *chosen)
 

@@ -157,6 +157,9 @@ class _Response:
         self.simplifier = Simplifier(_named)
         self.simplifier.start()
         self.letters = Letters(self.simplifier, {})
+        parts = (part for half in space.halves for part in half)
+        for letter in sorted({s}.union(*(part.free_symbols for part in parts)), key=str):
+            self.letters.value(letter)  # the order that sums are grouped in
         self.place = _place(self.letters.value(s))
 
     def written(self) -> Expr:

@@ -322,8 +322,7 @@ class Symbolic:
     @cached_property
     def _held(self) -> list[Scalar]:
         """The bias h."""
-        given = (self.tree, self.dag, self._arms)
-        return orthogonality.inverse_dynamics(*given, applied=self._applied)
+        return orthogonality.inverse_dynamics(self.tree, self.dag, self._arms, None, self._applied)
 
     @cached_property
     def _driving(self) -> list[Scalar]:

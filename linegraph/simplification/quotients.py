@@ -116,7 +116,9 @@ class Quotients:
         """A polynomial over a factor of it."""
         if factor == {0: 1}:
             return terms
-        return self.of(Poly(self._ring, terms) / Poly(self._ring, factor)).above
+        above, below = self.of(Poly(self._ring, terms) / Poly(self._ring, factor))
+        assert below == {0: 1}, "it is no factor"
+        return above
 
     def solve(
         self,
@@ -220,7 +222,11 @@ class Quotients:
             polys = [Poly(self._ring, part) for part in found]
             space = Space(self._ring, polys)
             above, below = space.cleared(polys)
-        return found if found.above else Quotient({}, {0: 1})
+        if not found.above:
+            return Quotient({}, {0: 1})
+        sign = 1 if found.below[min(found.below)] > 0 else -1
+        turned: list[Terms] = [{term: sign * k for term, k in part.items()} for part in found]
+        return Quotient(*turned)
 
     def _raised(self, parts: list[Terms]) -> list[Terms]:
         """Roots and cosines that divide the denominator put above it, where that is no longer."""
