@@ -61,7 +61,7 @@ class AtState:
         self.motion, self._names = motion, names
         self._simplifier = simplifier
         ring = simplifier.ring
-        ring.budget = ring.work + simplifier.budget
+        simplifier.start()
         self._letters = Letters(simplifier, values)
         self._checked(self._evaluate)
         self._numbers = [Numbers(point, values, ring) for point in simplifier.points]
@@ -84,8 +84,10 @@ class AtState:
         order = [k for k in reversed(range(mechanical)) if k not in independent]
         order += reversed(independent)
         J = [[numbers(x) for x in row] for row in motion.jacobian]
-        rows = numbers.basis(J, order)
-        position_rows = numbers.basis(J[: len(motion.position)], order)
+        sizes = [max(numbers(self._sizes(x)) for x in row) for row in motion.jacobian]
+        count = len(motion.position)
+        rows = numbers.basis(J, sizes, order)
+        position_rows = numbers.basis(J[:count], sizes[:count], order)
         if len(rows) < rank:
             problem = (
                 "the position is singular: more motions are free there than elsewhere, and the equations are "

@@ -190,16 +190,25 @@ class Face:
         return self.symbolic.equations()
 
     def linearise(self, at: Mapping[Any, Any] | None = None) -> StateSpace:
-        """A, B, C, D for small deviations from an equilibrium or a steady motion.
+        """A, B, C, D for small deviations from an equilibrium or a steady motion, in letters.
+
+        The states are q and v; where loops close or wheels roll, the independent changes of position and
+        velocity that the emitted ``linearize`` speaks of. `linearize` is the same function.
 
         Args:
-            at: values of coordinates, velocities and inputs, numbers or expressions of parameters; those left
-                out are 0, of quaternions the identity.
+            at: values of coordinates, velocities, inputs and unknowns of algebraic loops: numbers, or
+                expressions of parameters and other letters. Those left out are 0, of quaternions the
+                identity.
+                Numbers that close loops for the parameters' own values alone have these put in; coordinates
+                left out are then where the loops close.
 
         Raises:
-            ModelError: v̇ is not 0 there, there are constraints, or the time stands in the equations.
+            ModelError: v̇ is not 0 there, constraints do not hold or the position is singular, the time stands
+                in the equations, or they have too many terms.
         """
         return self.symbolic.linearise(at)
+
+    linearize = linearise
 
     def dynamic(self, expression: Expr) -> Expr:
         """An expression or matrix with `dynamicsymbols` of `sympy.physics.mechanics` for the state.

@@ -182,24 +182,30 @@ class Numbers:
         ]
         return found, products
 
-    def basis(self, rows: Rows, columns: Sequence[int]) -> list[tuple[int, int]]:
-        """Rows that are independent, each with a column that it determines; earlier columns first."""
-        left, zero = {i: list(row) for i, row in enumerate(rows)}, self.zero
-        scales = {i: max((abs(x) for x in row), default=0) for i, row in left.items()}
+    def basis(
+        self, rows: Rows, sizes: Sequence[Any], columns: Sequence[int]
+    ) -> list[tuple[int, int]]:
+        """Rows that are independent, each with a column that it determines; earlier columns first.
+
+        Args:
+            rows: of a matrix.
+            sizes: for each row that of the terms its entries are sums of: what is dust is small beside these.
+            columns: those that may be determined.
+        """
+        left, zero = {i: list(row) for i, row in enumerate(rows) if sizes[i]}, self.zero
         found = []
         for j in columns:
             if not left:
                 break
-            best = max(left, key=lambda i: (abs(left[i][j]) / (scales[i] or 1), -i))
-            if abs(left[best][j]) <= zero * scales[best]:
+            best = max(left, key=lambda i: (abs(left[i][j]) / sizes[i], -i))
+            if abs(left[best][j]) <= zero * sizes[best]:
                 continue
             own = left.pop(best)
             found.append((best, j))
             for i, row in left.items():
-                if row[j] != 0:
-                    factor = row[j] / own[j]
-                    left[i] = [a - factor * b for a, b in zip(row, own, strict=True)]
-                    left[i][j] = 0
+                factor = row[j] / own[j]
+                left[i] = [a - factor * b for a, b in zip(row, own, strict=True)]
+                left[i][j] = 0
         return sorted(found)
 
 
@@ -213,7 +219,7 @@ def quotient_written(simplifier: Simplifier, x: Quotient) -> Expr:
         return sympy.Integer(0)
     scale: Fraction | int = 1
     if simplifier.ring.inexact:
-        scale = max(Fraction(abs(k)) for k in below.values())
+        scale = max(abs(Fraction(k)) for k in below.values())
     if 2 * sum(k < 0 for k in below.values()) > len(below):
         scale = -scale
     parts = [scaled(terms, scale) for terms in (above, below)]

@@ -46,9 +46,7 @@ def state_space_of(symbolic: Symbolic) -> StateSpace:
             raise ModelError(f'"{name}"', problem)
     for name, x in zip(names, _at(symbolic, _at_rest(symbolic)).rates(), strict=True):
         if x != 0:
-            problem = (
-                f"has a part ({x}) that is neither of states nor of inputs; make its source an input"
-            )
+            problem = f"has a part ({x}) that is neither of states nor of inputs; make its source an input"
             raise ModelError(f'"{name}"', problem)
     return found
 
@@ -102,8 +100,11 @@ def _space(symbolic: Symbolic, state: AtState, *, moving: bool) -> StateSpace:
     rows = state.matrices(slopes(symbolic.motion, moving=moving), moving=moving)
     inputs, steep = _inputs(symbolic)
     n = len(state.states)
-    chosen = [list(range(n)), [n + k for k in inputs]]
-    columns = [*chosen, [None if k is None else n + k for k in steep]]
+    columns: list[list[int | None]] = [
+        list(range(n)),
+        [n + k for k in inputs],
+        [None if k is None else n + k for k in steep],
+    ]
     A, B, E, C, D, F = (picked(part, places) for part in rows for places in columns)
     names = (tuple(str(symbolic.u[k]) for k in inputs), tuple(symbolic.motion.outputs))
     return StateSpace(state.states, *names, A, B, C, D, E, F, symbolic.defaults)
@@ -111,7 +112,7 @@ def _space(symbolic: Symbolic, state: AtState, *, moving: bool) -> StateSpace:
 
 def _at(symbolic: Symbolic, values: Mapping[Symbol, Expr]) -> AtState:
     """The motion at a state; parameters in its values are the model's whatever is assumed of them."""
-    simplifier = symbolic.twin()
+    simplifier = symbolic.simplifier.twin()
     for symbol, e in _states(symbolic).items():
         if symbol not in values:
             simplifier.define(symbol, e)
@@ -120,6 +121,9 @@ def _at(symbolic: Symbolic, values: Mapping[Symbol, Expr]) -> AtState:
         symbol: e.xreplace({x: sympy.Symbol(x.name) for x in e.free_symbols if x.name in own})
         for symbol, e in values.items()
     }
+    letters = {x.name for e in plain.values() for x in e.free_symbols}
+    for name in sorted({*own, *letters}):  # the order that sums are grouped in
+        simplifier.ring.symbol("p", name)
     chosen = (_independent(symbolic), _rank(symbolic)) if symbolic.tree.closed else ()
     return AtState(symbolic.motion, simplifier, symbolic.names, plain, *chosen)
 
@@ -158,7 +162,9 @@ def _require_no_input(symbolic: Symbolic) -> None:
     calculus = Calculus(motion.dag)
     for x in (*motion.position, *motion.drift):
         if any(argument == "u" for argument, _ in calculus.support(x)):
-            raise ModelError(WHO, "there are constraints that follow inputs: prescribe no motion by them")
+            raise ModelError(
+                WHO, "there are constraints that follow inputs: prescribe no motion by them"
+            )
 
 
 def _at_rest(symbolic: Symbolic) -> dict[Symbol, Expr]:
@@ -213,4 +219,3 @@ def _rank(symbolic: Symbolic) -> int:
 
 def _valued(symbolic: Symbolic) -> bool:
     return all(p.value is not None for p in symbolic.derivation.model.parameters.values())
-

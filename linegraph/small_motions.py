@@ -1,4 +1,4 @@
-"""Small deviations from a state: the equations of motion, their derivatives, and what these make of A, B, C, D.
+"""Small deviations from a state: the equations of motion, their derivatives, and A, B, C, D from these.
 
 With small changes of position d, of velocity dv and of inputs du, and ``r = M a + h - Q - J^T lam``,
 
@@ -25,6 +25,7 @@ from linegraph.symbol_names import MULTIPLIERS
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from linegraph.closure import Chords
     from linegraph.differentiation import Gradient, Symbol
     from linegraph.expression import Dag
     from linegraph.kinematics import KinematicTree
@@ -81,13 +82,24 @@ class Motion:
     outputs: dict[str, Scalar]
     inputs: int
 
+    @classmethod
+    def of(
+        cls, tree: KinematicTree, dag: Dag, chords: Chords, v: Sequence[Scalar], **others: Any
+    ) -> Motion:
+        """A motion with the constraints of chords, if there are any."""
+        given: tuple[Any, ...] = ([], [], [], [])
+        if tree.closed:
+            given = (chords.jacobian(), chords.bias(), chords.rates(v), chords.position())
+        names = ("jacobian", "bias", "drift", "position")
+        return cls(tree, dag, **dict(zip(names, given, strict=True)), **others)
+
     @property
     def size(self) -> int:
         """The number of velocities."""
         return len(self.mass)
 
     def acting(self, moving: bool) -> list[Scalar]:
-        """R = M a + h - Q - J^T lam, without M a where nothing accelerates."""
+        """What is zero, M a + h - Q - J^T lam, without M a where nothing accelerates."""
         lam = [self.dag.symbol(MULTIPLIERS, k) for k in range(len(self.jacobian))]
         a = [self.dag.symbol("a", k) for k in range(self.size)] if moving else []
         found = []
@@ -180,7 +192,9 @@ def slopes(motion: Motion, *, moving: bool) -> Slopes:
     )
 
 
-def accelerations(motion: Motion, at: Calculator, freedoms: Freedoms) -> tuple[list[Any], list[Any]]:
+def accelerations(
+    motion: Motion, at: Calculator, freedoms: Freedoms
+) -> tuple[list[Any], list[Any]]:
     """v̇ and λ at a state; λ of redundant constraints is zero."""
     kept = [i for i, _ in freedoms.rows]
     right = [[at(x)] for x in motion.right]
@@ -231,7 +245,9 @@ def linear(motion: Motion, slopes: Slopes, at: Calculator, freedoms: Freedoms) -
     return above + [found[k] for k in freedoms.own], outputs
 
 
-def _allowed(motion: Motion, slopes: Slopes, at: Calculator, freedoms: Freedoms) -> tuple[Rows, Rows]:
+def _allowed(
+    motion: Motion, slopes: Slopes, at: Calculator, freedoms: Freedoms
+) -> tuple[Rows, Rows]:
     """(d, dv, du) by (ds, dw, du), and the rates of s by the same; nothing without constraints."""
     n, mechanical = motion.size, motion.tree.layout.mechanical
     zero, one = at(0), at(1)

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from math import gcd
 from typing import TYPE_CHECKING, Any
 
@@ -161,8 +162,11 @@ class _Response:
     def __init__(self, space: StateSpace, s: Expr) -> None:
         self.space, self.s = space, s
         self.simplifier = Simplifier(_named)
-        self.simplifier.ring.budget = self.simplifier.budget
+        self.simplifier.start()
         self.letters = Letters(self.simplifier, {})
+        parts = (part for half in space.halves for part in half)
+        for letter in sorted({s}.union(*(part.free_symbols for part in parts)), key=str):
+            self.letters.value(letter)  # the order that sums are grouped in
         self.place = _place(self.letters.value(s))
 
     def written(self) -> Expr:
@@ -204,7 +208,7 @@ class _Response:
         leading = powers[max(powers)]
         scale: Any = 1
         if self.simplifier.ring.inexact:
-            scale = max(abs(k) for k in leading.values())
+            scale = max(abs(Fraction(k)) for k in leading.values())
         if 2 * sum(k < 0 for k in leading.values()) > len(leading):
             scale = -scale
         return self._polynomial(above, scale) / self._polynomial(below, scale)
@@ -240,4 +244,4 @@ def _place(x: Any) -> int:
     """The generator that a symbol is."""
     (term,) = x.terms
     ((place, _),) = x.ring.exponents(term)
-    return place
+    return int(place)

@@ -323,14 +323,12 @@ class Symbolic:
 
     @cached_property
     def _held(self) -> list[Scalar]:
-        """H."""
-        return orthogonality.inverse_dynamics(
-            self.tree, self.dag, self._arms, applied=self._applied
-        )
+        """The bias h."""
+        return orthogonality.inverse_dynamics(self.tree, self.dag, self._arms, None, self._applied)
 
     @cached_property
     def _driving(self) -> list[Scalar]:
-        """Q."""
+        """The forces Q."""
         acting = self._acted(driven=True)
         active = orthogonality.generalised_forces(self.tree, self.dag, self._arms, acting)
         return efforts(self.tree, self.dag, self._chords, active)
@@ -352,28 +350,20 @@ class Symbolic:
     @cached_property
     def motion(self) -> Motion:
         """The equations over the DAG, as they are linearised."""
-        closed = self.tree.closed
-        states = zip([*self.q, *self.v], [*self._state[0], *self._state[1]], strict=True)
-        return Motion(
+        (q, v), exchange = self._state, self._exchange
+        return Motion.of(
             self.tree,
             self.dag,
-            self._mass,
-            [effort - h for effort, h in zip(self._driving, self._held, strict=True)],
-            self._rates,
-            self._chords.jacobian() if closed else [],
-            self._chords.bias() if closed else [],
-            self._chords.rates(self._state[1]) if closed else [],
-            self._chords.position() if closed else [],
-            [] if self._exchange is None else self._exchange.algebraic_loop(),
-            self._observed or {str(name): x for name, x in states},
-            len(self.u),
+            self._chords,
+            v,
+            mass=self._mass,
+            right=[effort - h for effort, h in zip(self._driving, self._held, strict=True)],
+            rates=self._rates,
+            loop=[] if exchange is None else exchange.algebraic_loop(),
+            outputs=self._observed
+            or dict(zip(map(str, [*self.q, *self.v]), [*q, *v], strict=True)),
+            inputs=len(self.u),
         )
-
-    def twin(self) -> Simplifier:
-        """A simplifier like its own that knows nothing yet."""
-        own = self.simplifier
-        units = [[("q", place) for place in unit] for unit in self.tree.quaternions]
-        return Simplifier(self._named, own.level, own.budget, units=units)
 
     @cached_property
     def _applied(self) -> Applied:

@@ -525,6 +525,35 @@ def test_equations_are_collected_in_accelerations() -> None:
             assert vanishes(whole.diff(a) - d.mass_matrix[i, j])
 
 
+# ---- refused
+
+
+@pytest.mark.parametrize("budget", [20, 40, 60])
+def test_what_is_refused_changes_nothing_that_is_asked_later(budget: int) -> None:
+    """The same form, or the same refusal, as where nothing was asked before."""
+    names = ("mass_matrix", "bias", "coriolis_matrix", "gravity", "kinetic_energy")
+    derivation = example("furuta")
+
+    def asked(form: Any, name: str) -> Any:
+        try:
+            return getattr(form, name)
+        except lg.ModelError as error:
+            return str(error)
+
+    alone = {name: asked(derivation.closed_form(budget=budget), name) for name in names}
+    refused = [name for name in names if isinstance(alone[name], str)]
+    assert 0 < len(refused) < len(names)
+    for first in refused:
+        form = derivation.closed_form(budget=budget)
+        asked(form, first)
+        generators, work = len(form.simplifier.ring.generators), form.simplifier.ring.work
+        assert (generators, work) == (0, 0)
+        for name in names:
+            form = derivation.closed_form(budget=budget)
+            asked(form, first)
+            assert asked(form, name) == alone[name]
+
+
 # ---- linearised
 
 

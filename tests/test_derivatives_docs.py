@@ -18,12 +18,22 @@ TEXT = (ROOT / "docs" / "derivatives.md").read_text()
 
 
 def test_the_program_prints_the_poles() -> None:
-    (program,) = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)
-    done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=ROOT
-    )
-    poles = [float(x) for x in re.findall(r"-?\d+\.\d*", done.stdout)]
+    poles = [float(x) for x in re.findall(r"-?\d+\.\d*", printed(0))]
     assert len(poles) == 4
+
+
+def test_the_program_in_letters_prints_what_stands_there() -> None:
+    (shown,) = re.findall(r"```text\n(.*?)```", TEXT, re.DOTALL)
+    assert printed(1) == shown
+
+
+def printed(place: int) -> str:
+    """What a program of the page prints."""
+    programs = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)
+    assert len(programs) == 2
+    command = [sys.executable, "-c", programs[place]]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
+    return done.stdout
 
 
 def test_the_command_writes_what_it_says(tmp_path: Path) -> None:

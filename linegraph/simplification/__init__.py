@@ -24,6 +24,7 @@ from linegraph.differentiation import Replay
 from linegraph.errors import ModelError
 from linegraph.simplification.angles import fewest, merged, spread
 from linegraph.simplification.factoring import Writer
+from linegraph.simplification.memory import Memory
 from linegraph.simplification.polynomial import Ring, Swollen
 from linegraph.simplification.proof import EXACT, INEXACT, Point
 from linegraph.sympy_walk import to_sympy
@@ -95,7 +96,7 @@ class Simplifier:
         self._names: dict[Expr, Symbol] = {}
         self._defined: dict[Symbol, Expr] = {}
         self._ring = Ring()
-        units = [tuple(unit) for unit in units]
+        units = self._units = [tuple(unit) for unit in units]
         for unit in units:
             self._ring.normalise(unit)
         self._replay = Replay(self._ring, self._ring.of_symbol)
@@ -110,25 +111,35 @@ class Simplifier:
     def all(self, given: Iterable[Scalar], what: str = "expression") -> list[Expr]:
         """The closed forms of the scalars of one quantity, within one budget.
 
+        What is refused leaves nothing behind: later quantities are as if it had not been asked for.
+
         Raises:
             ModelError: they have too many terms, or a power that is too high.
         """
         given = list(given)
-        self._ring.budget = self._ring.work + self._budget
+        memory = Memory(self, self._ring, self._replay, self._writer, *self._points)
+        self.start()
         found = []
         for n, x in enumerate(given):
             self._progress(f"simplifying {what} {bar(n, len(given))}")
             try:
                 found.append(self._closed(x))
-            except Swollen as swollen:
+            except BaseException as error:
+                memory.restore()
+                if not isinstance(error, Swollen):
+                    raise
                 problem = (
-                    f"{swollen.problem} for a closed form; ask for its function, or see it with named "
+                    f"{error.problem} for a closed form; ask for its function, or see it with named "
                     'intermediates in the report; the level "none" writes it as derived'
                 )
                 raise ModelError(what, problem) from None
         return found
 
     # -- what others calculate with
+
+    def twin(self) -> Simplifier:
+        """Another one that knows nothing yet."""
+        return Simplifier(self._symbol, self.level, self._budget, units=self._units)
 
     @property
     def ring(self) -> Ring:
@@ -140,10 +151,9 @@ class Simplifier:
         """Where forms are compared."""
         return self._points
 
-    @property
-    def budget(self) -> int:
-        """How many products of two terms a quantity may take."""
-        return self._budget
+    def start(self) -> None:
+        """Let the budget count from here."""
+        self._ring.budget = self._ring.work + self._budget
 
     def known(self, e: Expr) -> Symbol | None:
         """The symbol that is written as an expression, if one is."""

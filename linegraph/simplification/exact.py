@@ -1,4 +1,4 @@
-"""The values of symbols at a point, exactly: sin pi = 0, cos(pi/6) = sqrt(3)/2, sqrt(h^2) = h of a positive h.
+"""The values of symbols at a point, exactly: sin pi = 0, cos(pi/6) = sqrt(3)/2, sqrt(h^2) = h where h > 0.
 
 An algebra over the polynomials of a ring. What a function is worth sympy says; what it leaves as it is, such
 as sin(1/4) or pi itself, becomes a generator whose value is known at the points where forms are compared.
@@ -59,7 +59,8 @@ class Exact:
         """Any function of `functions.ARITY`."""
         given = [self._ring.poly(part) for part in x]
         numbers = [_number(part) for part in given]
-        if any(isinstance(k, float) for k in numbers) and None not in numbers:
+        rounded = self._ring.inexact or any(isinstance(k, float) for k in numbers)
+        if rounded and None not in numbers:
             return self._ring.poly(of_numbers(name, *(float(k) for k in numbers if k is not None)))
         if name in PLAIN and not any(self._is_constant(part) for part in given):
             return self._ring.poly(self._ring.function(name, *given))
@@ -75,6 +76,7 @@ class Exact:
         if e.is_Symbol:
             return self._letter(e)
         if e.is_Rational or e.is_Float:
+            self._ring.inexact |= e.is_Float  # 1.0 is one, too: its sine is no letter
             return self._ring.poly(number(e))
         if e.is_Add or e.is_Mul:
             parts = [self.value(part) for part in e.args]
@@ -121,7 +123,7 @@ class Exact:
     def _tie(self, angle: Expr) -> None:
         """Write 1 - sin^2 for the square of a cosine that sympy leaves as it is."""
         cosine, sine = sympy.cos(angle), sympy.sin(angle)
-        if cosine in self._constants or not (cosine.func, sine.func) == (sympy.cos, sympy.sin):
+        if cosine in self._constants or (cosine.func, sine.func) != (sympy.cos, sympy.sin):
             return
         (place,) = (p for t in self._constant(cosine).terms for p, _ in self._ring.exponents(t))
         self._ring.replace_square(place, (1 - self._constant(sine) ** 2).terms)
