@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from linegraph.derive import Derivation
-    from linegraph.differentiation import Symbol
     from linegraph.exchange import Exchange
     from linegraph.kinematics import KinematicTree
     from linegraph.state_space import StateSpace
@@ -70,7 +69,7 @@ class Symbolic:
             budget: how many products of terms a quantity may take.
             progress: told what is being simplified.
         """
-        self.derivation = self._derivation = derivation
+        self.derivation = derivation
         self._model = derivation.model
         self.names = derivation.symbol_names
         self._sympy = Sympy(self.names)
@@ -78,7 +77,9 @@ class Symbolic:
         self._parameters = self._valued(self.dag)
         self.tree: KinematicTree = derivation.tree(self.dag, self._parameters)
         units = [[("q", place) for place in unit] for unit in self.tree.quaternions]
-        self.simplifier = Simplifier(self._named, level, budget, progress, units)
+        self.simplifier = Simplifier(
+            lambda symbol: self._sympy.symbol(*symbol), level, budget, progress, units
+        )
         self.q, self.v, self.a, self.u, self.multipliers = map(
             self._column, ("q", "v", "a", "u", MULTIPLIERS)
         )
@@ -86,9 +87,6 @@ class Symbolic:
     def _valued(self, algebra: Any) -> dict[str, Scalar]:
         declared = self._model.parameters.values()
         return valued(declared, algebra, lambda p: algebra.symbol("p", p.name))
-
-    def _named(self, symbol: Symbol) -> Expr:
-        return self._sympy.symbol(*symbol)
 
     def _column(self, argument: str) -> Expr:
         names = self.names[argument]
@@ -142,7 +140,7 @@ class Symbolic:
             said = [row for row in rows if any(side != 0 for side in row)]
             left = [*left, *(row[0] for row in said)]
             right = [*right, *(row[1] for row in said)]
-        return Equations(left, right, Notation(self._derivation))
+        return Equations(left, right, Notation(self.derivation))
 
     @cached_property
     def coriolis_matrix(self) -> Expr:
@@ -185,7 +183,7 @@ class Symbolic:
         """Refuse what constraints or a singular mass matrix do not allow."""
         if self.tree.closed:
             raise ModelError(what, "there are constraints; their multipliers have no closed form")
-        self._derivation.require_inverse(what)
+        self.derivation.require_inverse(what)
 
     @cached_property
     def energy(self) -> tuple[Expr, ...]:
@@ -310,7 +308,7 @@ class Symbolic:
     def _scheme(self) -> InverseScheme:
         multipliers = self._of_dag(MULTIPLIERS)
         return InverseScheme(
-            self._derivation,
+            self.derivation,
             self.tree,
             self.dag,
             self._parameters,
@@ -385,7 +383,7 @@ class Symbolic:
 
     @cached_property
     def _sympy_tree(self) -> KinematicTree:
-        return self._derivation.tree(self._sympy, self._valued(self._sympy))
+        return self.derivation.tree(self._sympy, self._valued(self._sympy))
 
     @cached_property
     def paper_matrices(self) -> PaperMatrices:

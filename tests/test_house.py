@@ -34,7 +34,17 @@ OVERSIZE: dict[str, str] = {}
 """Files and functions that are bigger, each with its reason."""
 
 LAYERS: tuple[tuple[str, ...], ...] = (
-    ("errors", "exits", "version", "vector", "vectors", "coupling", "outputs", "notation", "tolerance"),
+    (
+        "errors",
+        "exits",
+        "version",
+        "vector",
+        "vectors",
+        "coupling",
+        "outputs",
+        "notation",
+        "tolerance",
+    ),
     ("domains", "files", "functions", "graph", "pivoting"),
     ("powers",),
     ("algebra", "expression", "formula", "jets"),
