@@ -14,7 +14,7 @@ from codegen import failures, layout, prose, real, routines, straight, templates
 from codegen.options import DEFAULT
 from codegen.printer import Notation, number, print_program
 from linegraph.functions import ARITY
-from linegraph.program import Program, Routine, live_nodes
+from linegraph.program import Program, Routine
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -263,7 +263,7 @@ def analytic(module: Module) -> set[str]:
 
 def _is_smooth(program: Program) -> bool:
     """Whether a program applies smooth functions only to what depends on more than parameters and time."""
-    live = live_nodes(program)
+    live = program.live
     kinked = [x.index for x in live if x.op in ARITY and x.op not in _SMOOTH]
     return not kinked or straight.varying(program, live).isdisjoint(kinked)
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from codegen import declare, prose
 from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL
-from linegraph.program import Program, live_nodes
+from linegraph.program import Program
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -65,7 +65,7 @@ def _operations(program: Program | Routine) -> tuple[str, ...]:
     if not isinstance(program, Program) or program.handed:
         return ("-",) * 4
     counts = [0, 0, 0, 0]
-    for node in live_nodes(program):
+    for node in program.live:
         if node.op not in (SYMBOL, NEG):
             counts[_KINDS.get(node.op, 3)] += 1
     counts[1] += sum(check.fraction is not None for check in program.checks)

@@ -17,7 +17,6 @@ from codegen.parts import cut, places
 from codegen.printer import Notation, Printer, number
 from linegraph.expression import SYMBOL, Node
 from linegraph.functions import ARITY
-from linegraph.program import live_nodes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -74,7 +73,7 @@ class _Writer:
         self.module, self.program, self.statuses, self.kind = module, program, statuses, kind
         self.prefix, self.macro = module.name, module.name.upper()
         self.ok = f"{self.macro}_{failures.OK}"
-        live = live_nodes(program)
+        live = program.live
         self.wide = varying(program, live) if kind.wide else frozenset()
         special = kind.wide or kind.inline
         forced = filter(self.apart, live) if special else paired(live)

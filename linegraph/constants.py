@@ -18,10 +18,11 @@ from typing import TYPE_CHECKING
 
 from linegraph.errors import ModelError
 from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL, Dag, Node, Operand
-from linegraph.program import Program, live_nodes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
+
+    from linegraph.program import Program
 
 
 class Restructured:
@@ -37,7 +38,7 @@ class Restructured:
     def programs(self, programs: Iterable[Program]) -> list[Program]:
         """All of them, nodes in the order in which they were derived."""
         programs = list(programs)
-        nodes = {node.index: node for program in programs for node in live_nodes(program)}
+        nodes = {node.index: node for program in programs for node in program.live}
         used = [x for program in programs for x in ends(program)]
         used += [x for node in nodes.values() for x in (node.a, node.b)]
         self._uses = Counter(x.index for x in used if isinstance(x, Node))

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL, Node
 from linegraph.functions import of_numbers
-from linegraph.program import live_nodes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -43,7 +42,7 @@ def run(program: Program, arguments: Mapping[str, Any]) -> list[list[float]]:
     def value(x: Any) -> float:
         return values[x.index] if isinstance(x, Node) else float(x)
 
-    for node in live_nodes(program):
+    for node in program.live:
         if node.op == SYMBOL:
             given = arguments[node.a]
             values[node.index] = float(given if node.b is None else given[node.b])

@@ -7,6 +7,7 @@ a reader should know of them stands in the labels and in the texts of the `Modul
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.expression import NEG, SUB, SYMBOL, Node, Operand
@@ -111,6 +112,11 @@ class Program:
         """Its name, arguments and cost."""
         arguments = ", ".join(argument.name for argument in self.arguments)
         return f"<program {self.name}({arguments}): {self.operations} operations>"
+
+    @cached_property
+    def live(self) -> list[Node]:
+        """All nodes that results and checks need, each after its operands."""
+        return _live(_roots(self.results, self.checks))
 
     @property
     def operations(self) -> int:
@@ -226,11 +232,6 @@ def assemble(
     )
     steps = _named(live, uses, {check.node.index for check in checks})
     return Program(name, about, arguments, steps, results, turned, checks, calls, status)
-
-
-def live_nodes(program: Program) -> list[Node]:
-    """All nodes that a program's results and checks need, each after its operands."""
-    return _live(_roots(program.results, program.checks))
 
 
 def operations_of(results: tuple[Result, ...], checks: tuple[Check, ...] = ()) -> int:

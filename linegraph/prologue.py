@@ -25,7 +25,6 @@ from linegraph.program import (
     Result,
     Routine,
     assemble,
-    live_nodes,
 )
 from linegraph.sums import collected, with_sums_collected
 
@@ -115,17 +114,14 @@ def with_prologue(
     parameters = next(a for a in given[0].arguments if a.name == "p")
     prologue = assemble(PREPARE, about, (parameters,), (result,))
     judged = _judged(twins)
-    guarded = (n.index for n in live_nodes(prologue) if n.op == DIV and n.b.index in judged)
-    (prologue,) = collected([replace(prologue, guarded=frozenset(guarded))])
-    plain = [constants.read_by(twin) for twin in twins]
-    # a sum that would compute with constants alone stays as it was
-    reading = [
-        before if _computes_constants(after) else after
-        for before, after in zip(plain, collected(plain), strict=True)
-    ]
-    found: dict[str, Program | Routine] = {
-        program.name: twin for program, twin in zip(given, reading, strict=True)
-    }
+    guarded = (n.index for n in prologue.live if n.op == DIV and n.b.index in judged)
+    prologue = collected(replace(prologue, guarded=frozenset(guarded)))
+    found: dict[str, Program | Routine] = {}
+    for own, twin in zip(given, twins, strict=True):
+        before = constants.read_by(twin)
+        after = collected(before)
+        # a sum that would compute with constants alone stays as it was
+        found[own.name] = before if _computes_constants(after) else after
     found |= {
         p.name: _twin(p, len(entries))
         for p in programs
@@ -153,7 +149,7 @@ class _Constants:
         self._dag = dag = Dag()
         self._known: dict[int, Operand] = {}
         constant: dict[int, bool] = {}
-        nodes = {node.index: node for program in programs for node in live_nodes(program)}
+        nodes = {node.index: node for program in programs for node in program.live}
         used: dict[int, Node] = {}
         varying = [node for _, node in sorted(nodes.items()) if not is_constant(node, constant)]
         operands = [x for node in varying if node.op != SYMBOL for x in (node.a, node.b)]
@@ -245,7 +241,7 @@ class _Handing:
             inner = [self._cost(name) for name in program.uses]
             return _together(inner)
         inner = [self._cost(call.program) for call in program.calls]
-        live = [node for node in live_nodes(program) if node.op != SYMBOL]
+        live = [node for node in program.live if node.op != SYMBOL]
         constant = [node for node in live if is_constant(node, self._constant)]
         divisors = [n.b for n in live if n.op == DIV and is_constant(n.b, self._constant)]
         own = _Cost(
@@ -259,7 +255,7 @@ class _Handing:
 def _computes_constants(twin: Program) -> bool:
     """Whether an operation of a function that reads the constants has nothing else to work on."""
     known: dict[int, bool] = {}
-    for node in live_nodes(twin):
+    for node in twin.live:
         if node.op == SYMBOL:
             known[node.index] = node.a == "c"
             continue

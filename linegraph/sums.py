@@ -20,10 +20,10 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from linegraph.constants import mapped, remade
 from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL, Dag, Node, Number, Operand
-from linegraph.program import Program, assemble, count_uses, live_nodes
+from linegraph.program import Program, assemble, count_uses
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from linegraph.program import Routine
 
@@ -68,29 +68,21 @@ class Combination(NamedTuple):
         return self.cost < self.operations or (self.repeats and self.cost == self.operations)
 
 
-def collected(programs: Iterable[Program]) -> list[Program]:
-    """Programs of one DAG with their sums collected; in a new DAG if there was anything to collect.
+def collected(program: Program) -> Program:
+    """A program with its sums collected; over a DAG of its own if there was anything to collect.
 
-    Each program is looked at by itself, since what one of them needs twice another may take apart. What
-    they have in common stays the same node. Collecting twice gives what collecting once gives.
+    Each program is looked at by itself, since what one of them needs twice another may take apart.
+    Collecting twice gives what collecting once gives.
     """
-    programs = list(programs)
-    plans = [Sums(program).plans() for program in programs]
-    while any(plans):
-        touched = [bool(plan) for plan in plans]
-        programs = _Rewritten(programs, plans).programs
+    while plan := Sums(program).plans():
         # what is written anew may leave others alone with a term
-        plans = [
-            Sums(program).plans() if again else {}
-            for program, again in zip(programs, touched, strict=True)
-        ]
-    return programs
+        program = _Rewriting(plan).of(program)
+    return program
 
 
 def with_sums_collected(programs: Sequence[Program | Routine]) -> tuple[Program | Routine, ...]:
-    """The same among routines, which have no sums."""
-    found = {x.name: x for x in collected(x for x in programs if isinstance(x, Program))}
-    return tuple(found.get(x.name, x) for x in programs)
+    """The same for all programs; routines have no sums."""
+    return tuple(collected(x) if isinstance(x, Program) else x for x in programs)
 
 
 class Sums:
@@ -102,7 +94,7 @@ class Sums:
 
     def __init__(self, program: Program) -> None:
         """Count how often each node is needed, and find the numbers within products."""
-        live = live_nodes(program)
+        live = program.live
         self.nodes = {node.index: node for node in live}
         self._uses, _ = count_uses(live, program.results, program.checks)
         self._linear: dict[int, Node] = {}
@@ -257,56 +249,43 @@ class Sums:
         return number * other, (MUL, a, b), taken + more
 
 
-class _Rewritten:
-    """Programs over a DAG of their own, some of their sums written anew.
+class _Rewriting:
+    """A program over a DAG of its own, some of its sums written anew.
 
-    Nodes are made in the order in which they were derived: as they were, and for each program where they, or
-    what they are made of, have become others.
-
-    Attributes:
-        programs: what they have become.
+    Nodes are made in the order in which they were derived: as they were, as long as all that they are made of
+    is, too.
     """
 
-    def __init__(
-        self, programs: Sequence[Program], plans: Sequence[dict[int, Combination]]
-    ) -> None:
-        """Make all nodes, then the programs."""
-        self._dag = dag = Dag()
-        self._common: dict[int, Operand] = {}
-        nodes: dict[int, Node] = {}
-        others: dict[int, list[int]] = {}
-        for place, (program, plan) in enumerate(zip(programs, plans, strict=True)):
-            changed: set[int] = set()
-            for node in live_nodes(program):
-                index, a, b = node.index, node.a, node.b
-                nodes[index] = node
-                if not plan:
-                    continue
-                if (
-                    index in plan
-                    or (isinstance(a, Node) and a.index in changed)
-                    or (isinstance(b, Node) and b.index in changed)
-                ):
-                    changed.add(index)
-                    others.setdefault(index, []).append(place)
-        own: list[dict[int, Operand]] = [{} for _ in programs]
-        for index in sorted(nodes):
-            node = nodes[index]
-            dag.label = node.label
-            self._common[index] = dag.copied(node, self._common)
-            for place in others.get(index, ()):
-                known = _Known(self._common, own[place])
-                new = plans[place].get(index)
-                own[place][index] = (
-                    remade(dag, node, known.of) if new is None else self._sum(new, known)
-                )
-        dag.release()
-        self.programs = [
-            _assembled(program, _Known(self._common, new))
-            for program, new in zip(programs, own, strict=True)
-        ]
+    def __init__(self, plan: Mapping[int, Combination]) -> None:
+        """Keep what the sums become, by the index of the node that is the whole."""
+        self._plan = plan
+        self._dag = Dag()
+        self._known: dict[int, Operand] = {}
 
-    def _sum(self, combination: Combination, known: _Known) -> Operand:
+    def of(self, program: Program) -> Program:
+        """The program, rewritten."""
+        dag, known, plan = self._dag, self._known, self._plan
+        changed: set[int] = set()
+        for node in program.live:
+            index, a, b = node.index, node.a, node.b
+            dag.label = node.label
+            if index in plan:
+                known[index] = self._sum(plan[index])
+            elif (isinstance(a, Node) and a.index in changed) or (
+                isinstance(b, Node) and b.index in changed
+            ):
+                known[index] = remade(dag, node, self._become)
+            else:
+                known[index] = dag.copied(node, known)
+                continue
+            changed.add(index)
+        return self._assembled(program)
+
+    def _become(self, x: Operand) -> Operand:
+        """What an operand has become."""
+        return self._known[x.index] if isinstance(x, Node) else x
+
+    def _sum(self, combination: Combination) -> Operand:
         """The nodes of a linear combination: what has the same factor is added before it is scaled."""
         dag = self._dag
         groups: dict[Number | None, tuple[Number, Operand]] = {}
@@ -314,7 +293,7 @@ class _Rewritten:
             if key == CONSTANT:
                 groups[None] = 1, k
                 continue
-            term = self._term(key, known)
+            term = self._term(key)
             first, group = groups.get(_size(k), (k, 0))
             groups[_size(k)] = first, dag.add(group, term if k == first else dag.negate(term))
         total: Operand = 0
@@ -322,44 +301,27 @@ class _Rewritten:
             total = dag.add(total, dag.multiply(group, first))
         return total
 
-    def _term(self, key: Key, known: _Known) -> Operand:
+    def _term(self, key: Key) -> Operand:
         if isinstance(key, int):
-            return known.at(key)
+            return self._known[key]
         op, a, b = key
         make = self._dag.multiply if op == MUL else self._dag.divide
-        return make(self._term(a, known), self._term(b, known))
+        return make(self._term(a), self._term(b))
 
-
-class _Known(NamedTuple):
-    """What nodes have become: those of a program of its own, and those of all."""
-
-    common: dict[int, Operand]
-    own: dict[int, Operand]
-
-    def of(self, x: Operand) -> Operand:
-        """An operand."""
-        return self.at(x.index) if isinstance(x, Node) else x
-
-    def at(self, index: int) -> Operand:
-        """By the index of a node."""
-        found = self.own.get(index)
-        return self.common[index] if found is None else found
-
-
-def _assembled(program: Program, known: _Known) -> Program:
-    made = mapped(program, known.of)
-    found = assemble(
-        made.name,
-        made.about,
-        made.arguments,
-        made.results,
-        made.checks,
-        made.calls,
-        status=made.status,
-    )
-    guarded = [known.at(index) for index in sorted(program.guarded)]
-    divisions = (x.a if x.op == NEG else x for x in guarded if isinstance(x, Node))
-    return replace(found, handed=program.handed, guarded=frozenset(x.index for x in divisions))
+    def _assembled(self, program: Program) -> Program:
+        made = mapped(program, self._become)
+        found = assemble(
+            made.name,
+            made.about,
+            made.arguments,
+            made.results,
+            made.checks,
+            made.calls,
+            status=made.status,
+        )
+        guarded = [self._known[index] for index in sorted(program.guarded)]
+        divisions = (x.a if x.op == NEG else x for x in guarded if isinstance(x, Node))
+        return replace(found, handed=program.handed, guarded=frozenset(x.index for x in divisions))
 
 
 def _size(k: Number) -> Number:

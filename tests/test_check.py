@@ -16,7 +16,7 @@ from linegraph.checking.report import counted
 from linegraph.cli import main
 from linegraph.errors import LinegraphError, ModelError
 from linegraph.expression import ADD, SUB, SYMBOL, Node
-from linegraph.program import Module, Program, live_nodes
+from linegraph.program import Module, Program
 
 if TYPE_CHECKING:
     from linegraph.checking.findings import Findings
@@ -251,7 +251,7 @@ def operations(module: Module) -> list[list[Node]]:
         own = programs.get(name)
         if own is not None:
             own = programs.get(own.handed, own)
-            found.append([node for node in live_nodes(own) if node.op != SYMBOL])
+            found.append([node for node in own.live if node.op != SYMBOL])
     return [nodes for nodes in found if nodes]
 
 

@@ -23,7 +23,7 @@ from linegraph import modelfile, urdf
 from linegraph.emission import module_for, render
 from linegraph.expression import SYMBOL, Node
 from linegraph.joints import JOINTS
-from linegraph.program import Program, live_nodes
+from linegraph.program import Program
 from linegraph.prologue import PREPARED, SHORT
 
 if TYPE_CHECKING:
@@ -276,7 +276,7 @@ def constant_operations(module: Module) -> dict[str, list[Node]]:
     for program in module.programs:
         if not isinstance(program, Program) or not program.name.endswith("_prepared"):
             continue
-        live = live_nodes(program)
+        live = program.live
         assert not any(node.op == SYMBOL and node.a == "p" for node in live)
         found[program.name] = [
             node
@@ -297,7 +297,7 @@ def test_nothing_is_left_to_hoist(name: str) -> None:
     assert bool(left) == bool(module.parameters)
     assert not any(left.values()), left
     programs = [p for p in module.programs if isinstance(p, Program) and p.name in left]
-    live = {node for program in programs for node in live_nodes(program)}
+    live = {node for program in programs for node in program.live}
     read = {node.b for node in live if node.op == SYMBOL and node.a == "c"}
     assert read == set(range(dict(module.counts)["NK"])) if left else not read
     divisors = [node.b for node in live if node.op == "div"]
@@ -491,7 +491,7 @@ def test_functions_of_parameters_are_constants(tmp_path: Path) -> None:
     model.law("law", joint="hinge", force="-k * x**3 / w - sin(tilt) * v / f")
     module = module_for(model, "formulas")
     prepared = [p for p in module.programs if p.name.endswith("_prepared")]
-    live = [n for p in prepared if isinstance(p, Program) for n in live_nodes(p)]
+    live = [n for p in prepared if isinstance(p, Program) for n in p.live]
     assert {n.op for n in live} <= {SYMBOL, "neg", "add", "sub", "mul", "div", "sin", "cos"}
     assert all(n.a.a == "q" for n in live if n.op in ("sin", "cos"))
     loaded = load(render(model, languages=["python"]), "formulas", tmp_path)
