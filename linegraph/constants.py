@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from linegraph.errors import ModelError
 from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL, Dag, Node, Operand
+from linegraph.program import assemble
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -185,3 +186,17 @@ def mapped(program: Program, of: Callable[[Operand], Operand]) -> Program:
         elif isinstance(bound, Node) or not node > bound * (check.fraction or 1):
             raise ModelError("", f"{check.about}, whatever the state")
     return replace(program, results=results, checks=tuple(checks))
+
+
+def rewritten(program: Program, of: Callable[[Operand], Operand]) -> Program:
+    """A program of what its results and checks have become, put in order."""
+    made = mapped(program, of)
+    return assemble(
+        made.name,
+        made.about,
+        made.arguments,
+        made.results,
+        made.checks,
+        made.calls,
+        status=made.status,
+    )

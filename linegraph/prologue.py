@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeVar
 
-from linegraph.constants import Restructured, ends, is_constant, mapped, remade
+from linegraph.constants import Restructured, ends, is_constant, remade, rewritten
 from linegraph.expression import DIV, NEG, SYMBOL, Dag, Node, Operand
 from linegraph.program import (
     PREPARED_SUFFIX,
@@ -103,25 +103,25 @@ def with_prologue(
     given = [p for p in programs if isinstance(p, Program) and is_prepared(p.name)]
     twins = Restructured().programs(given)
     constants = _Constants(twins)
-    entries = constants.entries
-    if not entries:
+    if not constants.entries:
         return with_sums_collected(programs), 0
-    result = Result("c", (len(entries),), tuple(entries), "constants")
+    met = _Met(constants.entries)
+    reading = [met.read_by(collected(constants.read_by(twin))) for twin in twins]
+    entries = tuple(met.entries)
     about = (
         "Prologue: all that depends on parameters alone. Call it once, and again whenever p changes; the "
         f"functions whose names end in {PREPARED_SUFFIX} take its constants c in place of p."
     )
     parameters = next(a for a in given[0].arguments if a.name == "p")
+    result = Result("c", (len(entries),), entries, "constants")
     prologue = assemble(PREPARE, about, (parameters,), (result,))
     judged = _judged(twins)
     guarded = (n.index for n in prologue.live if n.op == DIV and n.b.index in judged)
     prologue = collected(replace(prologue, guarded=frozenset(guarded)))
-    found: dict[str, Program | Routine] = {}
-    for own, twin in zip(given, twins, strict=True):
-        before = constants.read_by(twin)
-        after = collected(before)
-        # a sum that would compute with constants alone stays as it was
-        found[own.name] = before if _computes_constants(after) else after
+    found: dict[str, Program | Routine] = {
+        own.name: replace(x, arguments=_sized(x.arguments, len(entries)))
+        for own, x in zip(given, reading, strict=True)
+    }
     found |= {
         p.name: _twin(p, len(entries))
         for p in programs
@@ -167,22 +167,67 @@ class _Constants:
 
     def read_by(self, program: Program) -> Program:
         """The twin of a program."""
-        twin = mapped(_twin(program, len(self.entries)), self._of)
-        return assemble(
-            twin.name,
-            twin.about,
-            twin.arguments,
-            twin.results,
-            twin.checks,
-            twin.calls,
-            status=twin.status,
-        )
+        return rewritten(_twin(program, len(self.entries)), self._of)
 
     def _of(self, x: Operand) -> Operand:
         if not isinstance(x, Node):
             return x
         known = self._known.get(x.index)
         return self._dag.negate(self._known[x.a.index]) if known is None else known
+
+
+class _Met:
+    """Constants that met in collected sums: what an operation makes of constants alone is one more of them.
+
+    Attributes:
+        entries: all constants, as values of the parameters.
+    """
+
+    def __init__(self, entries: Sequence[Node]) -> None:
+        self.entries = list(entries)
+        self._dag = entries[0].dag
+        self._places = {node.index: place for place, node in enumerate(entries)}
+
+    def read_by(self, program: Program) -> Program:
+        """A program that reads constants, without operations on constants alone."""
+        values: dict[int, Operand] = {}
+        known: dict[int, Operand] = {}
+        dag = Dag()
+
+        def value(x: Operand) -> Operand:
+            return values[x.index] if isinstance(x, Node) else x
+
+        def of(x: Operand) -> Operand:
+            if not isinstance(x, Node):
+                return x
+            if x.index not in known:
+                known[x.index] = self._constant(dag, values[x.index])
+            return known[x.index]
+
+        for node in program.live:
+            operands = [x for x in (node.a, node.b) if isinstance(x, Node)]
+            if node.op == SYMBOL and node.a == "c":
+                values[node.index] = self.entries[node.b]
+            elif operands and all(x.index in values for x in operands):
+                values[node.index] = remade(self._dag, node, value)
+        if all(node.op in (SYMBOL, NEG) for node in program.live if node.index in values):
+            return program
+        for node in program.live:
+            dag.label = node.label
+            if node.index not in values:
+                known[node.index] = remade(dag, node, of)
+        return rewritten(program, of)
+
+    def _constant(self, dag: Dag, value: Operand) -> Operand:
+        """A constant by its value: a number, or where it stands in c."""
+        if not isinstance(value, Node):
+            return value
+        if value.op == NEG:
+            return dag.negate(self._constant(dag, value.a))
+        place = self._places.setdefault(value.index, len(self.entries))
+        if place == len(self.entries):
+            self.entries.append(value)
+        return dag.symbol("c", place)
 
 
 @dataclass(frozen=True)
@@ -252,20 +297,6 @@ class _Handing:
         return _together([own, *inner])
 
 
-def _computes_constants(twin: Program) -> bool:
-    """Whether an operation of a function that reads the constants has nothing else to work on."""
-    known: dict[int, bool] = {}
-    for node in twin.live:
-        if node.op == SYMBOL:
-            known[node.index] = node.a == "c"
-            continue
-        operands = [x for x in (node.a, node.b) if isinstance(x, Node)]
-        known[node.index] = all(known[x.index] for x in operands)
-        if known[node.index] and node.op != NEG:
-            return True
-    return False
-
-
 def _judged(programs: Iterable[Program]) -> frozenset[int]:
     """What checks of programs are about, whatever its sign, by index."""
 
@@ -293,6 +324,11 @@ def _twin(program: T, size: int) -> T:
         for call in program.calls
     )
     return replace(program, name=name, about=about, arguments=given, calls=calls)
+
+
+def _sized(arguments: Iterable[Argument], size: int) -> tuple[Argument, ...]:
+    """Arguments of a twin where there are so many constants."""
+    return tuple(replace(a, size=size) if a.name == "c" else a for a in arguments)
 
 
 def _together(costs: Sequence[_Cost]) -> _Cost:

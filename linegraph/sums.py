@@ -18,9 +18,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-from linegraph.constants import mapped, remade
+from linegraph.constants import remade, rewritten
 from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL, Dag, Node, Number, Operand
-from linegraph.program import Program, assemble, count_uses
+from linegraph.program import Program, count_uses
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -309,16 +309,7 @@ class _Rewriting:
         return make(self._term(a), self._term(b))
 
     def _assembled(self, program: Program) -> Program:
-        made = mapped(program, self._become)
-        found = assemble(
-            made.name,
-            made.about,
-            made.arguments,
-            made.results,
-            made.checks,
-            made.calls,
-            status=made.status,
-        )
+        found = rewritten(program, self._become)
         guarded = [self._known[index] for index in sorted(program.guarded)]
         divisions = (x.a if x.op == NEG else x for x in guarded if isinstance(x, Node))
         return replace(found, handed=program.handed, guarded=frozenset(x.index for x in divisions))
