@@ -32,6 +32,7 @@ _DOUBLE = {
     "closed": f"{CLOSED:g}",
     "accurate": f"{ACCURATE:g}",
     "far": "1e-2",
+    "reach": "1e4",
     "any": "1e300",
     "large": "1e100",
     "slack": "1e-2",
@@ -46,6 +47,7 @@ _FLOAT = {
     "closed": "2e-5",
     "accurate": "2e-2",
     "far": "1e-2",
+    "reach": "1e2",
     "any": "1e30",
     "large": "1e30",
     "slack": "1e-2",
@@ -56,7 +58,8 @@ TOLERANCES = {"double": _DOUBLE, "float": _FLOAT}
 rank: entries of J that are zero; pivot: of a mass matrix, beside what it was made of; residual: beside the
 size of its terms; rounding: of a constraint; step, still: corrections that change nothing any more; closed:
 a gap of loops that is none; accurate: the relative error of accelerations that is accepted; far: a gap
-beyond which a state is none of the mechanism, and not judged; any: more than anything; large: what is taken
+beyond which a state is none of the mechanism, and not judged; reach: a step of Newton's method that is no
+correction any more, to where the rounding of positions is as large as gaps that close; any: more than anything; large: what is taken
 for infinite in between, so that all languages agree; slack: the part by which redundant constraints may
 contradict each other.
 """

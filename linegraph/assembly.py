@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.errors import ModelError
 from linegraph.joints import Joint
-from linegraph.pivoting import free_motions, without_inertia
+from linegraph.pivoting import apart_columns, free_motions, without_inertia
 from linegraph.regularity import Idle, link_of
 from linegraph.search import Search, least, quoted
 from linegraph.tolerance import DEPENDENT
@@ -151,15 +151,9 @@ class _Judgement:
 
     def _independent(self, J: Array, rank: int) -> list[int]:
         """Velocities to keep: those declared last give way as long as the constraints determine them."""
-        np, count = self.np, self.tree.layout.mechanical
+        count = self.tree.layout.mechanical
         for apart in INDEPENDENT:
-            dependent: list[int] = []
-            for k in reversed(range(count)):
-                if len(dependent) == rank:
-                    break
-                columns = J[:, [*dependent, k]]
-                if np.linalg.svd(columns, compute_uv=False).min() > apart:
-                    dependent.append(k)
+            dependent = apart_columns(J, list(reversed(range(count))), rank, apart)
             if len(dependent) == rank:
                 return sorted(set(range(count)) - set(dependent))
         return []

@@ -240,6 +240,27 @@ def operations_of(results: tuple[Result, ...], checks: tuple[Check, ...] = ()) -
     return scaled + len(_operations(_roots(results, checks)))
 
 
+def leaves(x: Operand) -> int:
+    """How many symbols and numbers stand in an operand that is written out, shared parts as often as used.
+
+    Example:
+        >>> from linegraph.expression import Dag
+        >>> x = Dag().symbol("x")
+        >>> square = (x + 1) * (x + 2)
+        >>> leaves(square * square + x)
+        9
+    """
+    if not isinstance(x, Node):
+        return 1
+    counts: dict[int, int] = {}
+    for node in _live([x]):
+        operands = () if node.op == SYMBOL else (p for p in (node.a, node.b) if p is not None)
+        counts[node.index] = (
+            sum(counts[p.index] if isinstance(p, Node) else 1 for p in operands) or 1
+        )
+    return counts[x.index]
+
+
 def needed_for(entries: Iterable[Operand]) -> frozenset[int]:
     """The indices of the operations that some entries take together."""
     return frozenset(_operations([entry for entry in entries if isinstance(entry, Node)]))

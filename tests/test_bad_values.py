@@ -184,6 +184,24 @@ def test_bad_values_are_statuses_in_both_languages(
     assert not found, f"{len(found)} of {calls}: " + "\n".join(found[:20])
 
 
+FAR = (1e2, -3e2, 1e3, 1e4, -1e4, 1e6, 3.3e7, 1e8, -1e8, 1e10, 1e12)
+
+
+@pytest.mark.parametrize("closed", ["four_bar", "bicycle"])
+def test_far_positions_close_in_both_languages_or_in_none(closed: str, tmp_path: Path) -> None:
+    """Where one digit of a position is more than a gap that closes, no luck of rounding decides."""
+    both = Both(closed, tmp_path)
+    (project,) = (f for f in both.functions() if f.program.name == "project")
+    closes = set()
+    for place in range(len(project.arguments["q"])):
+        for far in FAR:
+            assert not problems(both, project, "q", place, far)
+            q = np.array(project.arguments["q"], float)
+            q[place] = far
+            closes.add(both.in_c(project, {"q": q})[0] == 0)
+    assert closes == {True, False}
+
+
 def test_the_list_of_statuses_has_no_number_and_no_name_twice() -> None:
     assert len({x.number for x in COMMON}) == len({x.name for x in COMMON}) == len(COMMON)
     assert all(FIRST <= x.number <= LAST for x in COMMON)

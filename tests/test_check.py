@@ -112,6 +112,47 @@ def test_small_entries_beside_large_ones_are_seen(
         assert [c.what for c in checking.check(derivation).bad] == ["M"]
 
 
+MOONS = """
+[gravity]
+acceleration = [0, 0, 0]
+[body.earth]
+mass = 6e24
+inertia = [1e37, 1e37, 1e37]
+[body.ship]
+mass = 1000
+inertia = [300, 300, 100]
+[free.earth_floats]
+between = ["ground", "earth"]
+[free.ship_floats]
+between = ["ground", "ship"]
+angles = "zyx"
+[law.gravitation]
+between = ["earth", "ship"]
+force = "6.674e-11*6e24*1000/x**2"
+"""
+"""A planet beside a ship; at rest with their centres in one point its law is not defined."""
+
+
+@pytest.mark.parametrize("coordinates", ["joint", "absolute", "absolute-angle"])
+def test_a_planet_beside_a_ship_is_judged_on_the_scale_of_each(
+    coordinates: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Right equations are good, and the force on the ship is not lost in the planet's gyroscopic torques."""
+    model = parsed(MOONS)
+    model.formulation(coordinates=coordinates)
+    found = checking.check(lg.derive(model))
+    assert found.good
+    assert not found.unjudged
+
+    first = next(k for k, x in enumerate(lg.derive(model).structure.velocities) if "ship" in x.name)
+
+    def on_the_ship(M: Any, h: Any) -> Any:
+        at = range(first, len(h))
+        return M, [x * (1 + 1e-6) if k in at else x for k, x in enumerate(h)]
+
+    assert not with_wrong_equations(monkeypatch, model, on_the_ship).good
+
+
 # ---- loops
 
 DOOR = """
@@ -469,3 +510,11 @@ def test_what_was_compared_is_told() -> None:
     assert "emitted program and Newton-Euler" in text
     assert "M, h, M a + h, accelerations" in text
     assert "power balance: prescribed motion does work" in text
+
+
+def test_what_the_structure_forbids_is_no_matter_of_bounds() -> None:
+    """A rotor turns with a joint that absolute coordinates leave out: no states would help."""
+    model = example("cart_pole_motor")
+    model.formulation(coordinates="absolute")
+    with pytest.raises(ModelError, match="keep joint coordinates there$"):
+        checking.check(lg.derive(model))

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
+import targets
 from click.testing import CliRunner
 from lxml import etree
 from plain_formulas import Reader, entries
@@ -21,8 +22,10 @@ import linegraph as lg
 from linegraph import modelfile, urdf
 from linegraph.cli import main
 from linegraph.errors import LinegraphError
+from linegraph.expression import Dag
 from linegraph.notation.plain import Plain
 from linegraph.notation.tree import Grid, Name, Sum
+from linegraph.program import leaves
 from linegraph.report import FORMATS, format_of, html, latex, markdown, report, text
 from linegraph.report.contents import document
 from linegraph.report.document import Document, Formulas, Listing, Matrix, Row, Section, formulas
@@ -561,3 +564,22 @@ def test_every_formula_of_a_report_is_written_alike() -> None:
     page = re.sub(r"\s+", "", written("furuta", "text"))
     for tree in formulas(reported("furuta").sections):
         assert re.sub(r"\s+", "", Plain()(tree)) in page
+
+
+def test_forces_that_share_parts_are_not_written_out() -> None:
+    """Spread out, an effort of a few hundred operations has a million letters: it is counted first."""
+    model = targets.everything()["loop5"]()
+    model.formulation(independent=None, coordinates="absolute-angle")
+    page = report(lg.derive(model), "text", level="none")
+    assert "Q is listed with the functions" in " ".join(page.split())
+
+
+def test_leaves_are_those_of_the_tree() -> None:
+    """Doubled fifty times, two letters are 2^51; nothing is written to count them."""
+    dag = Dag()
+    x = dag.symbol("q", 0) + dag.symbol("q", 1)
+    for _ in range(50):
+        x = dag.multiply(x, x)
+    assert leaves(x) == 2**51
+    assert leaves(2 * dag.symbol("t")) == 2
+    assert leaves(dag.symbol("t")) == leaves(3.5) == 1

@@ -354,3 +354,19 @@ def test_products_of_angles_are_found() -> None:
     q, p = ANGLES[:2]
     assert products_of_angles(sin(q) * cos(p))
     assert not products_of_angles(sin(q) * cos(q) + sin(p - q))
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_what_is_divided_by_a_float_has_a_float_in_front(level: str) -> None:
+    """1/2.4 is no quotient of whole numbers of sixteen digits; a third stays a third."""
+    dag = Dag()
+    x, y = dag.symbol("q", 0), dag.symbol("q", 1)
+    names = {0: sympy.Symbol("x"), 1: sympy.Symbol("y")}
+    written = Simplifier(lambda symbol: names[symbol[1]], level)
+    found = written(x / 2.4 + y / 3 + (x + y) / 0.0137)
+    at = {names[0]: sympy.Rational(7, 8), names[1]: sympy.Rational(-5, 4)}
+    assert float(found.subs(at)) == pytest.approx(
+        0.875 / 2.4 - 1.25 / 3 + (0.875 - 1.25) / 0.0137, rel=1e-14
+    )
+    assert all(max(abs(k.p), k.q) < 1e6 for k in found.atoms(sympy.Rational))
+    assert written(y / 3) == names[1] / 3

@@ -55,8 +55,9 @@ def check(derivation: Derivation, seed: int = 0) -> Findings:
 
 def _check(derivation: Derivation, seed: int) -> Findings:
     tree = derivation.structure
-    points, moving = _points(derivation, seed)
+    # first of all, since what the structure forbids is no law that bounds could help
     module = module_of(derivation, "checked", folded=False, about=())
+    points, moving = _points(derivation, seed)
     tally = Tally(_names(derivation))
     unjudged = _unjudged(derivation, moving=moving)
     driven, rows = _driven(derivation), equations(tree)

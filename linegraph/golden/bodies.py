@@ -127,8 +127,19 @@ class Bodies:
         )
         size, first = size + parts, self.walk.tree.layout.mechanical
         # of mechanics alone: what networks store may be of any size beside it
-        size[:first] = np.maximum(size[:first], NOISE * size[:first].max(initial=0.0))
+        size[:first] = self._with_noise(size[:first])
         return total - acting, size
+
+    def _with_noise(self, size: Array) -> Array:
+        """Sizes of forces along v, none much less than its largest neighbour for velocities of unit inertia.
+
+        A force in newtons and a torque in newton metres, a planet's and a ship's, have no common size, but
+        |M_ij| <= sqrt(M_ii M_jj): so much of one may be rounding in another.
+        """
+        np = self.walk.np
+        roots = np.sqrt(np.diag(self.mass_matrix[1])[: len(size)])
+        roots = np.where(roots > 0, roots, roots.max(initial=0.0) or 1.0)
+        return np.maximum(size, NOISE * roots * (size / roots).max(initial=0.0))
 
     def _along(self, acting: Applied | None) -> Valued:
         """What forces on links and along joints do along v."""

@@ -125,6 +125,7 @@ class Drawing:
     def _point(self, reach: float, place: int) -> Point:
         """A state at which everything is defined, and nothing nearly singular."""
         first: ModelError | None = None
+        defined = False
         for attempt in range(TRIES):
             # roots, logarithms and gaps want what is positive
             low = -1.0 if attempt % 2 == 0 else 0.2
@@ -135,11 +136,12 @@ class Drawing:
                 point = self._drawn((low, reach), rest=rest, varied=varied, slow=slow)
                 if point is not None and self._defined(point):
                     return point
+                defined = defined or point is not None
             except ModelError as error:
                 first = first or error
             except (ArithmeticError, ValueError):
                 continue
-        if first is not None:
+        if first is not None and not defined:
             raise undefined(self.derivation, first, self._somewhere())
         who = f'model "{self.derivation.model.name}"'
         raise ModelError(who, SINGULAR)

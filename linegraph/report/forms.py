@@ -21,7 +21,7 @@ from linegraph.notation.tree import (
     total,
 )
 from linegraph.notation.writing import pieces
-from linegraph.program import Result, operations_of
+from linegraph.program import Result, leaves, operations_of
 from linegraph.regularity import cause
 from linegraph.report.document import Block, Code, Formulas, Inline, Listing, Row, Section, said
 from linegraph.report.intermediates import listed_program
@@ -42,6 +42,9 @@ MOST_PRODUCTS = 3000
 
 MOST_PRINTED = 3600
 """Characters of closed forms that a person still reads: of M and h, of φ, J and γ, of all reactions."""
+
+MOST_LEAVES, MOST_WRITTEN = 2000, 40000
+"""Symbols and numbers of an effort, and characters of all efforts as trees, that are written beside named parts."""
 
 WIDEST_PIECE = 84
 """A closed form is not readable that has a part of more characters without a place to break the line."""
@@ -167,8 +170,10 @@ class Forms:
 
     def _forces(self) -> list[Block]:
         """Q of a long system: mostly an effort for each row."""
-        entries = [self._nodes(x, entries=True) for x in self._functions.efforts]
-        if len(str(entries)) > 40000:
+        efforts = self._functions.efforts
+        # counted first: written out, a few hundred shared operations may be millions
+        entries = [self._nodes(x, entries=True) for x in efforts if leaves(x) <= MOST_LEAVES]
+        if len(entries) < len(efforts) or len(str(entries)) > MOST_WRITTEN:
             return [said("Q is listed with the functions that `emit` writes.")]
         rows = [Row(Name("Q", (str(k),)), x) for k, x in enumerate(entries, 1)]
         return [said("The forces are"), Formulas(tuple(rows))]

@@ -23,7 +23,7 @@ import sympy
 from linegraph.differentiation import Replay
 from linegraph.errors import ModelError
 from linegraph.simplification.angles import fewest, merged, spread
-from linegraph.simplification.factoring import Writer
+from linegraph.simplification.factoring import Writer, in_decimals
 from linegraph.simplification.memory import Memory
 from linegraph.simplification.polynomial import Ring, Swollen
 from linegraph.simplification.proof import EXACT, INEXACT, Point
@@ -188,7 +188,7 @@ class Simplifier:
 
     def _closed(self, x: Scalar) -> Expr:
         if self.level == "none":
-            return to_sympy(x, self._symbol)
+            return in_decimals(to_sympy(x, self._symbol))
         terms = self._ring.poly(self._replay(x)).terms
         if len(terms) > MOST_TERMS:
             raise Swollen

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import sympy
 
-from linegraph.simplification.numbers import Terms, near, plain, reciprocal
+from linegraph.simplification.numbers import Terms, near, plain, readable, reciprocal
 from linegraph.simplification.polynomial import (
     COS,
     FUNCTION,
@@ -320,6 +320,12 @@ def number(k: Number) -> Expr:
     if isinstance(k, float):
         return sympy.Float(k)
     return sympy.Rational(k.numerator, k.denominator)
+
+
+def in_decimals(e: Expr) -> Expr:
+    """An expression with its fractions as a person would write them: what came of a float is one again."""
+    fractions = {k: readable(Fraction(k.p, k.q)) for k in e.atoms(sympy.Rational)}
+    return e.xreplace({k: sympy.Float(x) for k, x in fractions.items() if isinstance(x, float)})
 
 
 def _rounded(k: Number) -> Number:

@@ -32,6 +32,22 @@ def gather(terms: Terms, term: int, k: Number) -> None:
         terms[term] = new
 
 
+LONG = 2**40
+"""A fraction with a numerator or denominator beyond this is what floats have left, such as 1/2.4 in binary."""
+
+
+def readable(x: Number) -> Number:
+    """A number as a person would write it: what came of a float is a float again.
+
+    Example:
+        >>> readable(Fraction(1, 3)), readable(1 / Fraction(2.4)), readable(Fraction(4, 2))
+        (Fraction(1, 3), 0.4166666666666667, 2)
+    """
+    if isinstance(x, Fraction) and max(abs(x.numerator), x.denominator) > LONG:
+        x = float(x)
+    return plain(x)
+
+
 def plain(x: Number) -> Number:
     """A number as an int where it is one."""
     if isinstance(x, float):

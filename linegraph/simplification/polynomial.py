@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from linegraph.expression import Number
 from linegraph.functions import of_numbers
-from linegraph.simplification.numbers import Terms, gather, plain, reciprocal
+from linegraph.simplification.numbers import Terms, gather, plain, readable, reciprocal
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -196,7 +196,7 @@ class Ring:
         """A number as a polynomial, a polynomial as it is."""
         if isinstance(x, Poly):
             return x
-        x = plain(x)
+        x = readable(x)
         self.inexact = self.inexact or isinstance(x, float)
         return Poly(self, {0: x} if x else {})
 
