@@ -7,7 +7,9 @@ one value could not be told apart otherwise.
 
 from __future__ import annotations
 
+import random
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from linegraph.assembly import consistent
@@ -18,7 +20,6 @@ from linegraph.golden.blame import undefined
 from linegraph.golden.point import Kept, Point
 
 if TYPE_CHECKING:
-    import random
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from linegraph.bounds import Interval
@@ -56,6 +57,9 @@ SLOW, SLOW_AT = 1e-3, 4
 
 GAP = 1e-9
 """What constraints may miss, at most, in lengths and angles of size 1."""
+
+LOCKED = 1e-13
+"""Velocities that are this part of the largest are what rounding leaves of those that constraints lock."""
 
 BESIDE = 0.02
 """How far guesses are from positions: so little that they lead to these, and to no other way to assemble."""
@@ -187,33 +191,63 @@ class Drawing:
             if rest and not model.depends_on_time and not any(u) and not varied:
                 q, found = list(self.derivation.assembled.q), [0.0] * len(found)
             v, states = found[:first], found[first:] if not rest else states
-            v = [slow * x for x in v]
+            fastest = max(map(abs, v), default=0.0)
+            v = [slow * x if abs(x) > LOCKED * fastest else 0.0 for x in v]
             if not self._legal(numeric, q, [*v, *states]):
                 return None
         q, v = [short(x, 15) for x in q], [short(x, 15) for x in (*v, *states)]
         beside = [x + self.draw.uniform(-BESIDE, BESIDE) for x in q]
         numeric.tree.normalise(beside)
+        beside = _held(tree.positions, bounds.coordinates, beside)
         a, off, lam = (self._plain(n) for n in (len(v), len(v), len(equations(tree))))
+        # what networks store is not constrained, and keeps its size
+        off = _held(tree.velocities, bounds.velocities, [*off[:first], *v[first:]])
         off_q = [short(x, 15) for x in beside]
         return Point(self.derivation, t, u, q, v, a, off_q, off, self.kept, p or {}, lam)
 
     def _parameters(self, *, varied: bool) -> dict[str, float] | None:
         """Values of the parameters that are not the model's own; None where all are.
 
-        Redundant constraints stay so only as long as lengths fit: there all keep their values.
+        What redundant constraints are made of keeps its value where loops do not close with another.
         """
         model, found = self.derivation.model, {}
-        fixed = self.derivation.structure.closed and self.derivation.assembled.redundant > 0
         for parameter in model.parameters.values():
             name, value = parameter.name, parameter.value
-            if parameter.derived:
+            if parameter.derived or not varied or name in self._fixed:
                 continue
             bound = model.bounds.parameters.get(name)
-            if bound is not None and varied:
+            if bound is not None:
                 found[name] = self._one((0.5, 2.0), bound)
-            elif value is not None and varied and not fixed:
+            elif value is not None:
                 found[name] = short(float(value) * self.draw.uniform(*APART))
         return found or None
+
+    @cached_property
+    def _fixed(self) -> frozenset[str]:
+        """Parameters of redundant constraints that close no loop, or bind otherwise, with other values."""
+        derivation = self.derivation
+        if not derivation.structure.closed or not derivation.assembled.redundant:
+            return frozenset()
+        own = {p.name: p.value for p in derivation.model.parameters.values() if not p.derived}
+        return frozenset(
+            name
+            for name, value in own.items()
+            if value is not None and not self._closes({name: float(value) * APART[1]})
+        )
+
+    def _closes(self, p: dict[str, float]) -> bool:
+        """Whether loops close with these parameters, with as many constraints independent as ever."""
+        derivation, bounds = self.derivation, self.derivation.model.bounds
+        u = self._some(derivation.structure.inputs, bounds.inputs, (-1.0, 1.0))
+        try:
+            numeric = derivation.numeric(p, bounds.sometime, u)
+            q, v = consistent(derivation, numeric, random.Random(0))
+            if not self._legal(numeric, q, v):
+                return False
+            point = Point(derivation, bounds.sometime, u, q, v, v, q, v, self.kept, p)
+            return point.rank == derivation.assembled.rank
+        except (ModelError, ArithmeticError, ValueError):
+            return False
 
     def _legal(self, numeric: Numeric, q: Sequence[float], v: Sequence[float]) -> bool:
         """Whether the loops are closed, and everything is within its bounds."""

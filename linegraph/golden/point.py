@@ -6,7 +6,7 @@ accelerations is NumPy's.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -98,6 +98,11 @@ class Point:
     def walk(self) -> Walk:
         """How everything moves here."""
         return self.at(self.q, self.v)
+
+    @cached_property
+    def beside(self) -> Point:
+        """The same where loops are not closed, at any velocities."""
+        return replace(self, q=self.q_off, v=self.v_off)
 
     @cached_property
     def bodies(self) -> Bodies:
