@@ -26,6 +26,9 @@ _STATEMENT = re.compile(
 _NOT = re.compile(
     r"\bint\b|\benum\b|\{|\}|\bfor\b|\bswitch\b|\?|==|\bstatus\b|\bstruct\b|SOLVED|_OK\b|not_finite\(|\""
 )
+_WHOLE = re.compile(r"^(?:-?0(?:\.0)?|[i-n]|&.*)$")
+"""What is assigned that is no number: nothing, indices and pointers."""
+
 _OPENED = re.compile(r"^(?:static |[A-Z_0-9]+ )*(?:void|int|double|float)\b.*?\b(\w+)\(")
 
 SIGN = re.compile(r"(?<= )[-+](?= )")
@@ -123,7 +126,7 @@ def _statements(text: str) -> Iterator[tuple[int, str, str, list[str]]]:
         if opened:
             function, names = opened[1], []
         found = _STATEMENT.match(line)
-        if found is None or not function or _NOT.search(line) or found[2] in ("0", "0.0", "-0.0"):
+        if found is None or not function or _NOT.search(line) or _WHOLE.match(found[2]):
             continue
         yield number, function, found[2], list(names)
         made = re.match(r" +const double (t\d+) = ", line)
@@ -133,7 +136,7 @@ def _statements(text: str) -> Iterator[tuple[int, str, str, list[str]]]:
 
 def _wrong(kind: str, right: str, names: Sequence[str], draw: random.Random) -> str | None:
     """An expression with one thing wrong; None where it has nothing of the kind."""
-    plain = re.sub(r"\[[^\]]*\]", lambda x: "[" + "_" * (len(x[0]) - 2) + "]", right)
+    plain = _masked(right)
     if kind == "sign":
         places = list(SIGN.finditer(plain))
         if not places:
@@ -158,6 +161,16 @@ def _wrong(kind: str, right: str, names: Sequence[str], draw: random.Random) -> 
         return None
     place = draw.choice(places)
     return right[: place.start()] + draw.choice(others) + right[place.end() :]
+
+
+def _masked(text: str) -> str:
+    """An expression with the insides of all brackets blotted out."""
+    depth, found = 0, []
+    for letter in text:
+        depth -= letter == "]"
+        found.append("_" if depth else letter)
+        depth += letter == "["
+    return "".join(found)
 
 
 def callers(text: str, function: str) -> set[str]:
