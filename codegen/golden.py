@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from linegraph.program import Module, Program, Routine
     from linegraph.vectors import Expected, Then, Vectors
 
-DOUBLE = 1e-11
+DOUBLE = 5e-12
 """Rounding of a double is 1e-16; sums, solutions and 13 written digits take some hundred times that."""
 
 SINGLE = 1e-4

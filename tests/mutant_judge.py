@@ -1,8 +1,8 @@
 """What a mutant that golden vectors do not notice does elsewhere: nothing, less than rounding, or something.
 
-The mutated code runs beside the original one at hundreds of further states: others than those of the golden
-vectors, legal ones like these, and corners (nothing moves, nothing acts, one velocity alone, inputs far beyond
-what golden vectors draw). Statuses and all results are compared.
+The mutated code runs beside the original one at hundreds of further states: others than those of the
+golden vectors, legal ones like these, and corners (nothing moves, nothing acts, one velocity alone, inputs far
+beyond what golden vectors draw). Statuses and all results are compared.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ import contextlib
 import ctypes
 import random
 import re
-import shutil
 import subprocess
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -39,9 +38,9 @@ if TYPE_CHECKING:
     from linegraph import Model
     from linegraph.derive import Derivation
     from linegraph.golden.point import Point
-    from linegraph.program import Module, Program
+    from linegraph.program import Module
     from linegraph.tips import NamedFrame
-    from linegraph.vectors import Expected, Vectors
+    from linegraph.vectors import Vectors
 
     Array = Any
 
@@ -52,6 +51,7 @@ EQUIVALENT, ROUNDING = 1e-15, 1e-12
 """Differences up to these parts of the terms are none, and below rounding."""
 
 STATUS = ".status"
+"""How the labels of statuses end."""
 
 SEEDS = 16
 """So many times ten states, and as many corners."""
@@ -218,7 +218,12 @@ class Beside:
         return np.array(list((values | dict(point.p)).values()) or [0.0])
 
     def _call(
-        self, function: str, given: Sequence[str], point: Point, parameters: Array, returned: Mapping[str, Array]
+        self,
+        function: str,
+        given: Sequence[str],
+        point: Point,
+        parameters: Array,
+        returned: Mapping[str, Array],
     ) -> tuple[int, list[Array]]:
         program = self._programs[function]
         keys = iter(given)
@@ -310,10 +315,39 @@ def _most(
     return worst, whose
 
 
-def verdict(error: float, where: str) -> str:
-    """What a mutant is whose results differ by so much at most, and there."""
-    if STATUS in where:
-        return "status"
+def verdict(error: float) -> str:
+    """What a mutant is whose results differ by so much at most; another status is a difference of 1 or more."""
     if error <= EQUIVALENT:
         return "equivalent"
     return "below rounding" if error <= ROUNDING else "MISSED"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of the mutants of a model.
+
+    Attributes:
+        tried, killed: how many there were, and how many golden vectors notice.
+        survivors: of each other one what it is, how large the difference is and where, and the mutant.
+    """
+
+    tried: int
+    killed: int
+    survivors: tuple[tuple[str, float, str, mutants.Mutant], ...]
+
+
+def judged(subject: Subject, count: int, seed: int, folder: Path, seeds: int = SEEDS) -> Outcome:
+    """Mutants of a model's functions, run against its golden vectors; what they miss runs beside the original."""
+    draw = random.Random(seed)
+    chosen = mutants.mutants(subject.files[f"{NAME}.c"], draw, count)
+    program = mutants.build(subject.files, NAME, chosen, folder)
+    holds, told = mutants.run(program, 0)
+    assert holds, told
+    left = [k for k in range(1, len(chosen) + 1) if mutants.run(program, k)[0]]
+    survivors = []
+    if left:
+        beside = Beside(subject, chosen, folder / "beside")
+        points = list(states(subject, range(seeds)))
+        found = largest(beside, subject, points, left)
+        survivors = [(verdict(x), x, where, chosen[k - 1]) for k, (x, where) in found.items()]
+    return Outcome(len(chosen), len(chosen) - len(left), tuple(survivors))

@@ -1,8 +1,8 @@
 """Functions that are compared beside the constraints: what vanishes on these is not seen on them.
 
 In a parallelogram two angles are always equal, and where one is read in place of the other nothing changes.
-Functions of bodies alone are right at any coordinates and velocities, and are asked there. What constraints make
-of velocities and accelerations (J and γ) is right where these hold, and is asked there.
+Functions of bodies alone are right at any coordinates and velocities, and are asked there. What constraints
+make of velocities and accelerations (J and γ) is right where these hold, and is asked there.
 """
 
 from __future__ import annotations

@@ -34,7 +34,7 @@ STATES = 10
 TRIES = 40
 """How many states are drawn for one that is defined."""
 
-DIGITS = 13
+DIGITS = 14
 """Digits of what is written: the tolerance is far above them."""
 
 REACHES = (1.0, 0.3, 0.1, 0.03)
@@ -62,7 +62,7 @@ GAP = 1e-9
 """What constraints may miss, at most, in lengths and angles of size 1."""
 
 LITTLE = 0.1
-"""What a parameter that is zero becomes, as a part of the smallest one of its unit: a product of inertia stays possible."""
+"""What a parameter that is zero becomes, as a part of the least of its unit: products of inertia stay possible."""
 
 LOCKED = 1e-13
 """Velocities that are this part of the largest are what rounding leaves of those that constraints lock."""
@@ -128,7 +128,7 @@ class Drawing:
             return []
 
     def _quietest(self, count: int) -> list[Point]:
-        """Of some states very near zero the least loud: what sources do at some times is loud whatever the state."""
+        """Of some states very near zero the least loud: sources are loud at some times, whatever the state."""
         found = [[self._point(REACHES[-1], k) for _ in range(CALM)] for k in range(count)]
         np = found[0][0].walk.np
         sizes = np.array([_acting(some) for some in found])
@@ -260,7 +260,7 @@ class Drawing:
 
     @cached_property
     def _little(self) -> dict[str, float]:
-        """Values for parameters that are zero: little beside all others of their unit, none where there is none."""
+        """Values for parameters that are zero: little beside all others of their unit, if there are some."""
         own = [p for p in self.derivation.model.parameters.values() if not p.derived]
         found = {}
         for parameter in own:
