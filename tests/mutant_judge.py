@@ -1,8 +1,8 @@
 """What a mutant that golden vectors do not notice does elsewhere: nothing, less than rounding, or something.
 
 The mutated code runs beside the original one at hundreds of further states: others than those of the
-golden vectors, legal ones like these, and corners (nothing moves, nothing acts, one velocity alone, inputs far
-beyond what golden vectors draw). Statuses and all results are compared.
+golden vectors, legal ones like these, and corners (nothing moves, nothing acts, one velocity alone, inputs
+far beyond what golden vectors draw). Statuses and all results are compared.
 """
 
 from __future__ import annotations
@@ -200,10 +200,15 @@ class Beside:
         for expected in self._subject.vectors.expected:
             returned: dict[str, Array] = {}
             functions = {expected.function, *(t.function for t in expected.then)}
-            if not functions & reached and not (CONSTANTS in expected.given and "prepare" in reached):
+            if not functions & reached and not (
+                CONSTANTS in expected.given and "prepare" in reached
+            ):
                 continue
             one = (expected.function, expected.given, expected.results)
-            for function, given, keys in (one, *((t.function, t.given, t.results) for t in expected.then)):
+            for function, given, keys in (
+                one,
+                *((t.function, t.given, t.results) for t in expected.then),
+            ):
                 status, out = self._call(function, given, point, parameters, returned)
                 yield f"{expected.label}.{function}{STATUS}", "", np.array([float(status)])
                 if status:
@@ -279,7 +284,9 @@ def largest(
             others = {label: x for label, _, x in beside.results(number, point, [number])}
             for label, key, x in right:
                 if label in others:  # else a status before it differs, and that counts
-                    most, where = apart[number].get((label, key), (np.zeros(len(x)), np.zeros(len(x))))
+                    most, where = apart[number].get(
+                        (label, key), (np.zeros(len(x)), np.zeros(len(x)))
+                    )
                     error = _error(x, others[label])
                     apart[number][label, key] = (
                         np.maximum(most, error),
@@ -316,7 +323,7 @@ def _most(
 
 
 def verdict(error: float) -> str:
-    """What a mutant is whose results differ by so much at most; another status is a difference of 1 or more."""
+    """What a mutant is whose results differ by so much at most; another status differs by 1 or more."""
     if error <= EQUIVALENT:
         return "equivalent"
     return "below rounding" if error <= ROUNDING else "MISSED"
@@ -337,7 +344,7 @@ class Outcome:
 
 
 def judged(subject: Subject, count: int, seed: int, folder: Path, seeds: int = SEEDS) -> Outcome:
-    """Mutants of a model's functions, run against its golden vectors; what they miss runs beside the original."""
+    """Mutants of a model against its golden vectors; what these miss runs beside the original."""
     draw = random.Random(seed)
     chosen = mutants.mutants(subject.files[f"{NAME}.c"], draw, count)
     program = mutants.build(subject.files, NAME, chosen, folder)

@@ -208,7 +208,15 @@ def build(files: dict[str, str], name: str, chosen: Sequence[Mutant], folder: Pa
     mutated = schemata(files[f"{name}.c"], chosen) + TAIL
     (folder / f"{name}.c").write_text(mutated, encoding="ascii")
     program = folder / "check"
-    command = [*COMPILER, "-Dmain=golden_main", f"{name}_test.c", f"{name}.c", "-lm", "-o", str(program)]
+    command = [
+        *COMPILER,
+        "-Dmain=golden_main",
+        f"{name}_test.c",
+        f"{name}.c",
+        "-lm",
+        "-o",
+        str(program),
+    ]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[:2000]
     return program

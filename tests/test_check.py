@@ -226,9 +226,7 @@ def test_a_store_that_moves_and_pulls_balances() -> None:
     [("capacitor", "Use variable_capacitor"), ("inductor", "Use solenoid or reluctance_machine")],
 )
 @pytest.mark.parametrize("current", ["i0", "1e-3*sin(t)"])
-def test_a_store_that_moves_without_a_force_is_refused(
-    kind: str, named: str, current: str
-) -> None:
+def test_a_store_that_moves_without_a_force_is_refused(kind: str, named: str, current: str) -> None:
     """Its energy changes with the joint, and nothing pulls there: told where, and what pulls."""
     line = 1 + MOVING.format(current=current, store=STORES[kind]).split("\n").index(f"[{kind}.C]")
     message = rf'^m.toml:{line}: {kind} "C": .*names gap: .*energy would come from nothing. {named}'

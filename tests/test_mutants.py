@@ -1,7 +1,7 @@
 """Mutants of emitted C: golden vectors notice them, but for those that make no difference.
 
-What they do not notice runs beside the original at further legal states and at corners, and must differ there by
-less than rounding: no kind of mutant is excused by what it looks like.
+What they do not notice runs beside the original at further legal states and at corners, and must differ there
+by less than rounding: no kind of mutant is excused by what it looks like.
 """
 
 from __future__ import annotations

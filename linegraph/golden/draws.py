@@ -62,7 +62,7 @@ GAP = 1e-9
 """What constraints may miss, at most, in lengths and angles of size 1."""
 
 LITTLE = 0.1
-"""What a parameter that is zero becomes, as a part of the least of its unit: products of inertia stay possible."""
+"""What a parameter that is zero becomes, as a part of the least of its unit: inertias stay possible."""
 
 LOCKED = 1e-13
 """Velocities that are this part of the largest are what rounding leaves of those that constraints lock."""
@@ -128,7 +128,7 @@ class Drawing:
             return []
 
     def _quietest(self, count: int) -> list[Point]:
-        """Of some states very near zero the least loud: sources are loud at some times, whatever the state."""
+        """Of states very near zero the least loud: sources are loud at some times, whatever the state."""
         found = [[self._point(REACHES[-1], k) for _ in range(CALM)] for k in range(count)]
         np = found[0][0].walk.np
         sizes = np.array([_acting(some) for some in found])
@@ -277,7 +277,10 @@ class Drawing:
         if not derivation.structure.closed or not derivation.assembled.redundant:
             return frozenset()
         own = {p.name: p.value for p in derivation.model.parameters.values() if not p.derived}
-        others = {name: APART[1] * float(value or self._little.get(name, 0)) for name, value in own.items()}
+        others = {
+            name: APART[1] * float(value or self._little.get(name, 0))
+            for name, value in own.items()
+        }
         return frozenset(name for name, other in others.items() if not self._closes({name: other}))
 
     def _closes(self, p: dict[str, float]) -> bool:
