@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from linegraph.program import Module, Program, Routine
     from linegraph.vectors import Expected, Then, Vectors
 
-DOUBLE = 1e-11
-"""Rounding of a double is 1e-16; sums, solutions and 13 written digits take some hundred times that."""
+DOUBLE = 5e-12
+"""Rounding of a double is 1e-16; sums and solutions take some hundred times that, seldom a thousand times."""
 
 SINGLE = 1e-4
 """Rounding of a float is 6e-8, that of the given state included; the same again."""

@@ -174,12 +174,13 @@ class Bodies:
     def energy(self) -> Valued:
         """Kinetic and potential energy, that of springs included; what networks store."""
         np = self.walk.np
-        kinetic = potential = size = 0.0
+        kinetic = moving = potential = size = 0.0
         for body in self.heavy:
             moved = body.moved
             u, w = moved.linear[:, -1:], moved.angular[:, -1:]
             force, torque = self.needed(body, u, w)
             kinetic += float((u.T @ force + w.T @ torque)[0, 0]) / 2
+            moving += self._moving(body)
             height = self.gravity @ (body.mass * moved.origin + body.first)
             potential -= float(height)
             size += abs(float(height))
@@ -189,5 +190,17 @@ class Bodies:
         stored = [] if exchange is None else [float(exchange.energy())]
         found = np.array([kinetic, potential + springs, *stored])
         size += abs(springs)
-        least = NOISE * max(kinetic, size)
-        return found, np.array([max(kinetic, least), max(size, least), *map(abs, stored)])
+        return found, np.array([moving, max(size, NOISE * moving), *map(abs, stored)])
+
+    def _moving(self, body: Heavy) -> float:
+        """What a body's kinetic energy would be if nothing that moves it went against another."""
+        np, moved = self.walk.np, body.moved
+
+        def most(along: Array) -> float:
+            parts = along[:, :-1] * np.array(self.walk.v)
+            driven = along[:, -1] - parts.sum(axis=1)
+            return float(np.linalg.norm(parts, axis=0).sum() + np.linalg.norm(driven))
+
+        u, w = most(moved.linear), most(moved.angular)
+        arm, inertia = np.linalg.norm(body.first), np.linalg.norm(body.inertia)
+        return float(abs(body.mass) * u * u + 2 * arm * u * w + inertia * w * w) / 2

@@ -320,6 +320,10 @@ class Derivatives:
         np = self.point.walk.np
         units = np.eye(len(self.point.u))
         _, (below, of_below) = self._of_independent([self._beside(du=du) for du in units], 0.0)
+        # what a force along a velocity that is locked does is left of what locks it
+        of_T, inertia = self.point.reduction[0][1], self.point.reduced[0][0]
+        parts = np.abs(np.linalg.inv(inertia)) @ of_T.T @ np.abs(self._by_inputs.forces)
+        of_below = np.maximum(of_below, parts)
         above = np.zeros((len(self.point.kept.changes), len(units)))
         return np.vstack([above, below]), np.vstack([above, of_below])
 

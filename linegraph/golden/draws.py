@@ -7,7 +7,9 @@ one value could not be told apart otherwise.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import random
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from linegraph.assembly import consistent
@@ -18,7 +20,6 @@ from linegraph.golden.blame import undefined
 from linegraph.golden.point import Kept, Point
 
 if TYPE_CHECKING:
-    import random
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from linegraph.bounds import Interval
@@ -33,14 +34,17 @@ STATES = 10
 TRIES = 40
 """How many states are drawn for one that is defined."""
 
-DIGITS = 13
+DIGITS = 14
 """Digits of what is written: the tolerance is far above them."""
 
 REACHES = (1.0, 0.3, 0.1, 0.03)
 """How far states of networks and inputs are from zero; the first that will do."""
 
 EVEN = 300.0
-"""What acts in a network may be this much larger at one state than at most."""
+"""What acts in a network may be this much larger at one state than at most, and than very near zero."""
+
+CALM, QUIET = 12, 0.25
+"""How many states say what acts very near zero, and which part of them is quiet."""
 
 REGULAR = 1e4
 """Accelerations may be this much smaller than what they are made of; beyond, M is nearly singular."""
@@ -56,6 +60,12 @@ SLOW, SLOW_AT = 1e-3, 4
 
 GAP = 1e-9
 """What constraints may miss, at most, in lengths and angles of size 1."""
+
+LITTLE = 0.1
+"""What a parameter that is zero becomes, as a part of the least of its unit: inertias stay possible."""
+
+LOCKED = 1e-13
+"""Velocities that are this part of the largest are what rounding leaves of those that constraints lock."""
 
 BESIDE = 0.02
 """How far guesses are from positions: so little that they lead to these, and to no other way to assemble."""
@@ -92,19 +102,39 @@ class Drawing:
                 bounds name what does not exist.
         """
         self._require_known()
-        network = self.derivation.formulation.network is not None
+        network = self.derivation.formulation.network
+        if network is None:
+            return [self._point(REACHES[0], k) for k in range(count)]
         points: list[Point] = []
-        for reach in REACHES if network else REACHES[:1]:
+        calm = self._calm()
+        for reach in REACHES:
             try:
                 found = [self._point(reach, k) for k in range(count)]
             except ModelError:
                 if not points:
                     raise
-                break
+                return points
             points = found
-            if _even(points):
-                break
-        return points
+            if _even(points, calm):
+                return points
+        return self._quietest(count)
+
+    def _calm(self) -> Any:
+        """What acts in networks at states very near zero, a row each; no row where laws are not defined."""
+        beside = replace(self, draw=random.Random(0), chosen=[{}], varied=False)
+        try:
+            return _acting([beside._point(REACHES[-1], k) for k in range(1, CALM + 1)])
+        except ModelError:
+            return []
+
+    def _quietest(self, count: int) -> list[Point]:
+        """Of states very near zero the least loud: sources are loud at some times, whatever the state."""
+        found = [[self._point(REACHES[-1], k) for _ in range(CALM)] for k in range(count)]
+        np = found[0][0].walk.np
+        sizes = np.array([_acting(some) for some in found])
+        least = np.quantile(sizes, QUIET, axis=(0, 1))
+        loud = (sizes / np.where(least > 0, least, np.inf)).max(axis=2, initial=0.0)
+        return [some[k] for some, k in zip(found, loud.argmin(axis=1), strict=True)]
 
     def _require_known(self) -> None:
         """Refuse bounds of what the model does not have."""
@@ -133,7 +163,8 @@ class Drawing:
             try:
                 rest = place == 0 and attempt < 2
                 slow = SLOW if place == SLOW_AT and attempt < TRIES // 2 else 1.0
-                point = self._drawn((low, reach), rest=rest, varied=varied, slow=slow)
+                p = self._parameters(varied=varied, zeros=attempt < TRIES // 4)
+                point = self._drawn((low, reach), p, rest=rest, slow=slow)
                 if point is not None and self._defined(point):
                     return point
                 defined = defined or point is not None
@@ -156,14 +187,19 @@ class Drawing:
             return None
 
     def _drawn(
-        self, within: tuple[float, float], *, rest: bool, varied: bool, slow: float
+        self,
+        within: tuple[float, float],
+        p: dict[str, float] | None,
+        *,
+        rest: bool,
+        slow: float,
     ) -> Point | None:
         """A state: at rest in mechanics, or a random one, on the constraints if there are any.
 
         Args:
             within: the least value drawn, and how far states of networks and inputs reach.
+            p: parameters that have not their own values, if any.
             rest: whether it is to be at rest.
-            varied: whether parameters are to be drawn.
             slow: what velocities of mechanics are multiplied by.
 
         Returns:
@@ -173,7 +209,6 @@ class Drawing:
         tree, model = self.derivation.structure, self.derivation.model
         first, bounds = tree.layout.mechanical, model.bounds
         still = rest and low < 0
-        p = self._parameters(varied=varied)
         t = self._one((0.1, 1.0), bounds.t) if model.depends_on_time else 0.0
         u = self._some(tree.inputs, bounds.inputs, (reach * low, reach), still=still)
         numeric = self.derivation.numeric(p, t, u)
@@ -186,36 +221,83 @@ class Drawing:
         numeric.tree.normalise(q)
         if tree.closed:
             q, found = consistent(self.derivation, numeric, self.draw)
-            if rest and not model.depends_on_time and not any(u) and not varied:
+            if rest and not model.depends_on_time and not any(u) and p is None:
                 q, found = list(self.derivation.assembled.q), [0.0] * len(found)
             v, states = found[:first], found[first:] if not rest else states
-            v = [slow * x for x in v]
+            fastest = max(map(abs, v), default=0.0)
+            v = [slow * x if abs(x) > LOCKED * fastest else 0.0 for x in v]
             if not self._legal(numeric, q, [*v, *states]):
                 return None
         q, v = [short(x, 15) for x in q], [short(x, 15) for x in (*v, *states)]
         beside = [x + self.draw.uniform(-BESIDE, BESIDE) for x in q]
         numeric.tree.normalise(beside)
+        beside = _held(tree.positions, bounds.coordinates, beside)
         a, off, lam = (self._plain(n) for n in (len(v), len(v), len(equations(tree))))
+        # what networks store is not constrained, and keeps its size
+        off = _held(tree.velocities, bounds.velocities, [*off[:first], *v[first:]])
         off_q = [short(x, 15) for x in beside]
         return Point(self.derivation, t, u, q, v, a, off_q, off, self.kept, p or {}, lam)
 
-    def _parameters(self, *, varied: bool) -> dict[str, float] | None:
+    def _parameters(self, *, varied: bool, zeros: bool = False) -> dict[str, float] | None:
         """Values of the parameters that are not the model's own; None where all are.
 
-        Redundant constraints stay so only as long as lengths fit: there all keep their values.
+        What redundant constraints are made of keeps its value where loops do not close with another.
+
+        Args:
+            varied: whether any is to have another value.
+            zeros: whether those that are zero are.
         """
         model, found = self.derivation.model, {}
-        fixed = self.derivation.structure.closed and self.derivation.assembled.redundant > 0
         for parameter in model.parameters.values():
-            name, value = parameter.name, parameter.value
-            if parameter.derived:
+            name = parameter.name
+            if parameter.derived or not varied or name in self._fixed:
                 continue
             bound = model.bounds.parameters.get(name)
-            if bound is not None and varied:
+            if bound is not None:
                 found[name] = self._one((0.5, 2.0), bound)
-            elif value is not None and varied and not fixed:
-                found[name] = short(float(value) * self.draw.uniform(*APART))
+            elif parameter.value or (zeros and name in self._little):
+                value = float(parameter.value or self._little[name])
+                found[name] = short(value * self.draw.uniform(*APART))
         return found or None
+
+    @cached_property
+    def _little(self) -> dict[str, float]:
+        """Values for parameters that are zero: little beside all others of their unit, if there are some."""
+        own = [p for p in self.derivation.model.parameters.values() if not p.derived]
+        found = {}
+        for parameter in own:
+            if parameter.value == 0:
+                alike = [abs(float(p.value)) for p in own if p.value and p.unit == parameter.unit]
+                if alike:
+                    found[parameter.name] = LITTLE * min(alike)
+        return found
+
+    @cached_property
+    def _fixed(self) -> frozenset[str]:
+        """Parameters of redundant constraints that close no loop, or bind otherwise, with other values."""
+        derivation = self.derivation
+        if not derivation.structure.closed or not derivation.assembled.redundant:
+            return frozenset()
+        own = {p.name: p.value for p in derivation.model.parameters.values() if not p.derived}
+        others = {
+            name: APART[1] * float(value or self._little.get(name, 0))
+            for name, value in own.items()
+        }
+        return frozenset(name for name, other in others.items() if not self._closes({name: other}))
+
+    def _closes(self, p: dict[str, float]) -> bool:
+        """Whether loops close with these parameters, with as many constraints independent as ever."""
+        derivation, bounds = self.derivation, self.derivation.model.bounds
+        u = self._some(derivation.structure.inputs, bounds.inputs, (-1.0, 1.0))
+        try:
+            numeric = derivation.numeric(p, bounds.sometime, u)
+            q, v = consistent(derivation, numeric, random.Random(0))
+            if not self._legal(numeric, q, v):
+                return False
+            point = Point(derivation, bounds.sometime, u, q, v, v, q, v, self.kept, p)
+            return point.rank == derivation.assembled.rank
+        except (ModelError, ArithmeticError, ValueError):
+            return False
 
     def _legal(self, numeric: Numeric, q: Sequence[float], v: Sequence[float]) -> bool:
         """Whether the loops are closed, and everything is within its bounds."""
@@ -274,12 +356,25 @@ def _held(
     return [x if bound is None else min(max(x, bound[0]), bound[1]) for x, bound in pairs]
 
 
-def _even(points: Sequence[Point]) -> bool:
-    """Whether what acts in networks is of the same size at all states, more or less."""
-    np = points[0].walk.np
-    first = points[0].walk.tree.layout.mechanical
-    sizes = np.array([np.abs(point.bodies.bias[0][first:]) for point in points])
-    return bool((sizes.max(axis=0) <= EVEN * np.median(sizes, axis=0)).all())
+def _acting(points: Sequence[Point]) -> Any:
+    """How large what acts in networks is, a row for each state."""
+    np, first = points[0].walk.np, points[0].walk.tree.layout.mechanical
+    return np.array([np.abs(point.bodies.bias[0][first:]) for point in points])
+
+
+def _even(points: Sequence[Point], calm: Any) -> bool:
+    """Whether what acts in networks is of the same size at all states, more or less, and very near zero too.
+
+    An exponential law may be huge at all states alike, and then hides all that adds to it.
+    """
+    np, sizes = points[0].walk.np, _acting(points)
+    most = sizes.max(axis=0)
+    even = bool((most <= EVEN * np.median(sizes, axis=0)).all())
+    if not len(calm):
+        return even
+    # what is nothing near zero has a dead zone, and is to be seen beyond it
+    least = np.quantile(calm, QUIET, axis=0)
+    return even and bool((most <= EVEN * np.where(least > 0, least, np.inf)).all())
 
 
 def _at_rest(derivation: Derivation) -> list[float]:

@@ -6,7 +6,7 @@ accelerations is NumPy's.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -20,6 +20,7 @@ from linegraph.golden.kinematics import Kinematics
 from linegraph.golden.outputs import Outputs
 from linegraph.golden.parameters import Parameters
 from linegraph.golden.walk import Walk
+from linegraph.lengths import of_rows, pure
 from linegraph.tolerance import DEPENDENT
 
 if TYPE_CHECKING:
@@ -98,6 +99,11 @@ class Point:
     def walk(self) -> Walk:
         """How everything moves here."""
         return self.at(self.q, self.v)
+
+    @cached_property
+    def beside(self) -> Point:
+        """The same where loops are not closed, at any velocities."""
+        return replace(self, q=self.q_off, v=self.v_off)
 
     @cached_property
     def bodies(self) -> Bodies:
@@ -181,14 +187,11 @@ class Point:
 
     @cached_property
     def rank(self) -> int:
-        """How many constraints are independent.
-
-        Of J by velocities of unit inertia, each row in units of its directions and lever arms: what is small
-        against these is rounding, whatever the other rows are.
-        """
-        np, (_, of_M), (J, of_J) = self.walk.np, self.bodies.mass_matrix, self._rows
-        across, down = self.scale(of_M, of_J)
-        values = np.linalg.svd(J * across * down[:, None], compute_uv=False)
+        """How many constraints are independent, by what the assembly measures J with, and its threshold."""
+        np, J = self.walk.np, self._rows[0]
+        if not len(J):
+            return 0
+        values = np.linalg.svd(pure(J, self.walk.numeric.sizes), compute_uv=False)
         return int((values > DEPENDENT).sum())
 
     @cached_property
@@ -221,8 +224,8 @@ class Point:
         parts += free @ (np.abs(scaled.T) @ np.abs(inverse.T @ found))
         found, parts = found * scale, parts * scale
         # of least norm: what does nothing along v is none of it, to the last digit
-        left, sizes, _ = np.linalg.svd(J * scale[n:, None] * scale[:n], full_matrices=False)
-        left = left[:, sizes > DEPENDENT]
+        left = np.linalg.svd(J * scale[n:, None] * scale[:n], full_matrices=False)[0]
+        left = left[:, : self.rank]
         lam, of_lam = left @ (left.T @ found[n:]), parts[n:]
         # what a plane mechanism does not need out of its plane is rounding
         of_lam = np.maximum(of_lam, NOISE * of_lam.max(initial=0.0))
@@ -235,7 +238,7 @@ class Point:
             return np.linalg.inv(scaled)
         M, J = scaled[:n, :n], scaled[n:, :n]
         left, sizes, right = np.linalg.svd(J)
-        rank = int((sizes > DEPENDENT).sum())
+        rank = self.rank
         held, free = right[:rank].T, right[rank:].T
         across = held / sizes[:rank] @ left[:, :rank].T
         moved = free @ np.linalg.inv(free.T @ M @ free) @ free.T
@@ -278,7 +281,10 @@ class Point:
         (J, of_J), (bias, of_bias) = self.closed.jacobian, self.closed.bias
         kept = list(self.kept.velocities)
         others = [k for k in range(n) if k not in kept]
-        inverse = np.linalg.pinv(J[:, others], rcond=1e-10)
+        measures = self.walk.numeric.sizes
+        down, of_v = of_rows(J, measures), np.array(measures.velocities, float)[others]
+        inverse = np.linalg.pinv(pure(J, measures)[:, others], rcond=DEPENDENT)
+        inverse = of_v[:, None] * inverse / down
         T, rest = np.zeros((n, len(kept))), np.zeros(n)
         T[kept, range(len(kept))] = 1.0
         T[others] = -inverse @ J[:, kept]

@@ -12,6 +12,7 @@ import random
 from typing import TYPE_CHECKING, Any
 
 from linegraph.errors import ModelError
+from linegraph.golden.beside import beside
 from linegraph.golden.draws import DIGITS, Asked, Drawing, short
 from linegraph.golden.point import Kept, Point
 from linegraph.golden.references import Reference, references
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 UNTESTED = {
     "prepare": "the functions that take its constants are called by those that are compared",
     "algebraic_loop": "called by functions that are compared",
+    "constraint_sizes": "called by functions that are compared",
     "loop_equations": "called by functions that are compared",
     "constrained_slopes": "called by functions that are compared",
 }
@@ -67,7 +69,10 @@ def vectors(
         >>> vectors(derivation, module).values["M"].rows[0]
         (0.5,)
     """
-    compared = _compared(references(frames), module)
+    register = references(frames)
+    if derivation.structure.closed:
+        register = {label: beside(label, known) for label, known in register.items()}
+    compared = _compared(register, module)
     if not compared:
         raise ModelError("tests", "nothing that is emitted is known by an independent route")
     details: dict[str, Any] = {}
@@ -172,7 +177,8 @@ def _untested(compared: set[str], module: Module) -> tuple[tuple[str, str], ...]
     def why(program: Program | Routine) -> str:
         if program.name in handed:
             return HANDED
-        return UNTESTED.get(program.name, NO_ROUTE) if _returns(program) else EMPTY
+        own = program.name.removesuffix(PREPARED_SUFFIX)
+        return UNTESTED.get(own, NO_ROUTE) if _returns(program) else EMPTY
 
     return tuple((p.name, why(p)) for p in module.programs if p.name not in compared)
 
