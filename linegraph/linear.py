@@ -64,7 +64,7 @@ def linearise(symbolic: Symbolic, at: Mapping[Any, Any]) -> StateSpace:
             identity.
 
     Raises:
-        ModelError: v̇ is not 0 there, the constraints do not hold there, or the time stands in the equations.
+        ModelError: M is singular, v̇ is not 0 there, the constraints do not hold there, or the time stands in the equations.
 
     Example:
         >>> from linegraph import Model, derive
@@ -78,6 +78,7 @@ def linearise(symbolic: Symbolic, at: Mapping[Any, Any]) -> StateSpace:
         [  0, 1],
         [g/l, 0]])
     """
+    symbolic.derivation.require_inverse(WHO)
     motion = symbolic.motion
     _require_no_time(motion, WHO)
     _require_no_input(symbolic)

@@ -17,7 +17,7 @@ from monotone_networks import Drawn, draw
 from linegraph import Model, ModelError, derive
 from linegraph.emission import render
 from linegraph.modelfile import parse
-from linegraph.network_programs import NO_SOLUTION
+from linegraph.statuses import NO_LOOP_SOLUTION
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -180,7 +180,7 @@ def test_a_loop_with_one_solution_is_solved_and_others_are_reported(
     if expected is None:
         with pytest.raises(Failed) as failed:
             c.call("outputs", *given, out=[(1,)])
-        assert failed.value.status == NO_SOLUTION[0]
+        assert failed.value.status == NO_LOOP_SOLUTION.number
         with pytest.raises(np.linalg.LinAlgError):
             python.outputs(*given)
         return
