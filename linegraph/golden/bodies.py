@@ -128,7 +128,27 @@ class Bodies:
         size, first = size + parts, self.walk.tree.layout.mechanical
         # of mechanics alone: what networks store may be of any size beside it
         size[:first] = self._with_noise(size[:first])
+        size[first:] += self._loop_noise()
         return total - acting, size
+
+    def _loop_noise(self) -> Array:
+        """How large the terms of an algebraic loop are in F of the network's states.
+
+        The unknowns of a loop are as exact as the terms of its equations, K dx = dr; a small current that is
+        told from the difference of two voltages is less exact than its own digits.
+        """
+        np, number = self.walk.np, self.walk.number
+        exchange = self.walk.numeric.exchange(self.walk.q, self.walk.v)
+        if exchange is None or not exchange.network.loop:
+            return np.zeros(len(self.walk.v) - self.walk.tree.layout.mechanical)
+        network, still = exchange.network, exchange.still
+        count = len(network.states)
+        K, slopes = (
+            np.array([[number(still(x)) for x in row] for row in rows])
+            for rows in (network.loop_jacobian, network.force_slopes[:count])
+        )
+        terms = np.array([number(still(x)) for x in network.loop_sizes])
+        return np.abs(slopes.reshape(count, -1)) @ np.abs(np.linalg.inv(K)) @ np.abs(terms)
 
     def _with_noise(self, size: Array) -> Array:
         """Sizes of forces along v, none much less than its largest neighbour for velocities of unit inertia.

@@ -138,6 +138,12 @@ class Network:
         return [Sizes(self.laws.calculus, (LOOP,))(r) for r in self.loop]
 
     @cached_property
+    def force_slopes(self) -> list[list[Scalar]]:
+        """F of each row, by the unknowns of the algebraic loop."""
+        size = range(len(self.loop))
+        return [[self.laws.calculus.derivative(f, (LOOP, k)) for k in size] for f in self.force]
+
+    @cached_property
     def variable_sizes(self) -> dict[str, tuple[Scalar, Scalar]]:
         """Of (X, Y) of every edge the size of the terms that they are sums of."""
         sizes = Sizes(self.laws.calculus)
