@@ -59,9 +59,9 @@ rank: entries of J that are zero; pivot: of a mass matrix, beside what it was ma
 size of its terms; rounding: of a constraint; step, still: corrections that change nothing any more; closed:
 a gap of loops that is none; accurate: the relative error of accelerations that is accepted; far: a gap
 beyond which a state is none of the mechanism, and not judged; reach: a step of Newton's method that is no
-correction any more, to where the rounding of positions is as large as gaps that close; any: more than anything; large: what is taken
-for infinite in between, so that all languages agree; slack: the part by which redundant constraints may
-contradict each other.
+correction any more, to where the rounding of positions is as large as gaps that close; any: more than
+anything; large: what is taken for infinite in between, so that all languages agree; slack: the part by which
+redundant constraints may contradict each other.
 """
 
 _FUNCTIONS = sorted({*ARITY, "fabs", "fmax", "fmin"} - {"abs", "max", "min", "sign"})

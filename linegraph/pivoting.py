@@ -72,9 +72,9 @@ def without_inertia(M: Array, T: Array, rounding: float) -> list[Array]:
 def apart_columns(J: Array, order: Sequence[int], most: int, apart: float) -> list[int]:
     """Columns of J, the first in an order of which the least singular value stays above a bound.
 
-    Columns taken so far are Q R with Q orthonormal. As R grows by a column, so does its inverse, and the least
-    singular value lies between 1 and sqrt(n) over Frobenius' norm of that; itself it is asked for only where
-    these two do not decide.
+    Columns taken so far are Q R with Q orthonormal. As R grows by a column, so does its inverse, and the
+    least singular value lies between 1 and sqrt(n) over Frobenius' norm of that; itself it is asked for only
+    where these two do not decide.
 
     Args:
         J: in pure numbers.

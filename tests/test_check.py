@@ -522,5 +522,5 @@ def test_what_the_structure_forbids_is_no_matter_of_bounds() -> None:
     """A rotor turns with a joint that absolute coordinates leave out: no states would help."""
     model = example("cart_pole_motor")
     model.formulation(coordinates="absolute")
-    with pytest.raises(ModelError, match="keep joint coordinates there$"):
+    with pytest.raises(ModelError, match=r"keep joint coordinates there$"):
         checking.check(lg.derive(model))

@@ -44,7 +44,7 @@ MOST_PRINTED = 3600
 """Characters of closed forms that a person still reads: of M and h, of φ, J and γ, of all reactions."""
 
 MOST_LEAVES, MOST_WRITTEN = 2000, 40000
-"""Symbols and numbers of an effort, and characters of all efforts as trees, that are written beside named parts."""
+"""Symbols and numbers of an effort, and characters of all as trees, that are written beside named parts."""
 
 WIDEST_PIECE = 84
 """A closed form is not readable that has a part of more characters without a place to break the line."""

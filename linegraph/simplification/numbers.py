@@ -33,7 +33,7 @@ def gather(terms: Terms, term: int, k: Number) -> None:
 
 
 LONG = 2**40
-"""A fraction with a numerator or denominator beyond this is what floats have left, such as 1/2.4 in binary."""
+"""A fraction with a numerator or denominator beyond this is what floats leave, such as 1/2.4 in binary."""
 
 
 def readable(x: Number) -> Number:
