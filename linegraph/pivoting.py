@@ -36,7 +36,7 @@ def _eliminated(J: Array, most: int) -> tuple[Array, int, Array]:
     columns = np.arange(A.shape[1])
     for k in range(most):
         rest = np.abs(A[k:, k:])
-        i, j = (k + x for x in np.unravel_index(np.argmax(rest), rest.shape))
+        i, j = (k + int(x) for x in np.unravel_index(np.argmax(rest), rest.shape))
         if not abs(A[i, j]) > DEPENDENT:
             return A, k, columns
         A[[k, i]] = A[[i, k]]
