@@ -630,8 +630,7 @@ REFUSED = {
     + LOADED.replace("nce = 1\n[c", "nce = 2\n[c").replace("capacitance = 1", 'capacitance = "C"'),
     "massless": '[body.arm]\n[revolute.hinge]\nbetween = ["ground", "arm"]\naxis = [0, 0, 1]\n'
     + SOURCE
-    + MOTOR
-    + "inertia = 1\n",
+    + MOTOR,
     "which edge": HINGE + MOTOR + SOURCE.replace('"u"', '"across(drive)"'),
     "two descriptions": LOADED + 'coenergy = "x**2"\n',
     "no place": MOTOR.replace('joint = "hinge"\n', ""),

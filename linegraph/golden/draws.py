@@ -334,12 +334,14 @@ class Drawing:
     def _defined(self, point: Point) -> bool:
         """Whether all is finite there, and accelerations are not what is left of far larger things."""
         np = point.walk.np
+        # where M is singular everywhere, nothing that is emitted divides by it
+        solving = not self.derivation.idle
         for name, made in (pair for asked in self.chosen for pair in asked.items()):
             try:
                 value, size = made(point)
                 if not (np.isfinite(value).all() and np.isfinite(size).all()):
                     return False
-                if name in SOLVED and not _regular(np, *point.motion[0]):
+                if solving and name in SOLVED and not _regular(np, *point.motion[0]):
                     return False
                 if name == "Lambda" and not _regular(np, value, size, least=0):
                     return False
