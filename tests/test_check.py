@@ -355,6 +355,7 @@ def missed(
         node = draw.choice(nodes)
         before = (node.op, node.a, node.b)
         kind = mutate(node, nodes, draw)
+        forget(module)
         if kind:
             tried += 1
             try:
@@ -365,7 +366,14 @@ def missed(
             except (ArithmeticError, ValueError, LinegraphError):
                 pass  # no number comes out: noticed
         node.op, node.a, node.b = before
+    forget(module)
     return tried, found
+
+
+def forget(module: Module) -> None:
+    """Programs keep the list of their operations, which are not meant to change."""
+    for program in module.programs:
+        vars(program).pop("live", None)
 
 
 MUTATED = ("double_pendulum", "four_bar", "cart_pole_motor", "heavy_top")
