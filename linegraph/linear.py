@@ -64,7 +64,8 @@ def linearise(symbolic: Symbolic, at: Mapping[Any, Any]) -> StateSpace:
             identity.
 
     Raises:
-        ModelError: M is singular, v̇ is not 0 there, the constraints do not hold there, or the time stands in the equations.
+        ModelError: M is singular, v̇ is not 0 there, the constraints do not hold there, or the time stands in
+            the equations.
 
     Example:
         >>> from linegraph import Model, derive
