@@ -532,3 +532,10 @@ def test_what_the_structure_forbids_is_no_matter_of_bounds() -> None:
     model.formulation(coordinates="absolute")
     with pytest.raises(ModelError, match=r"keep joint coordinates there$"):
         checking.check(lg.derive(model))
+
+
+def test_a_mass_on_an_axis_has_none_about_it_but_for_rounding() -> None:
+    """A particle hangs on a rope without mass: about the rope nothing turns, and that is no error."""
+    model = example("crane")
+    model.formulation(coordinates="absolute")
+    assert checking.check(lg.derive(model)).good

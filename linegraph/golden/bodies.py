@@ -79,7 +79,7 @@ class Bodies:
     def mass_matrix(self) -> Valued:
         """M, with what networks store; networks by their laws in numbers."""
         np, n = self.walk.np, len(self.walk.v)
-        total, diagonal = np.zeros((n, n), self.walk.number), np.zeros(n)
+        total, diagonal, turned = np.zeros((n, n), self.walk.number), np.zeros(n), np.zeros(n)
         for body in self.heavy:
             linear, angular = body.moved.linear[:, :-1], body.moved.angular[:, :-1]
             force, torque = self.needed(body, linear, angular)
@@ -87,12 +87,25 @@ class Bodies:
             # a slender body has none about its axis, but for the rounding of the rest
             diagonal += np.linalg.norm(body.inertia) * np.square(np.abs(angular)).sum(axis=0)
             diagonal += abs(body.mass) * np.square(np.abs(linear)).sum(axis=0)
+            arms = np.square(np.abs(body.moved.origin - self._origins)).sum(axis=1)
+            turned += abs(body.mass) * arms * np.square(np.abs(angular)).sum(axis=0)
         for i, j, entry in network_entries(
             self.walk.numeric.exchange(self.walk.q, self.walk.v), self.walk.numeric.algebra
         ):
             total[i, j] += self.walk.number(entry)
+        # the same mass aside of an axis: on it there is none, but for the rounding of directions
+        diagonal = np.maximum(diagonal, NOISE**2 * turned)
         diagonal = np.sqrt(np.maximum(diagonal, np.abs(np.diag(total))))
         return total, np.maximum(np.abs(total), np.outer(diagonal, diagonal))
+
+    @cached_property
+    def _origins(self) -> Array:
+        """Of each velocity where the link stands that it moves, in ground axes."""
+        found = self.walk.np.zeros((len(self.walk.v), 3), self.walk.number)
+        for k, link in enumerate(self.walk.tree.links):
+            for freedom in link.velocities:
+                found[freedom.index] = self.walk.moved(k).origin
+        return found
 
     def needed(self, body: Heavy, linear: Array, angular: Array) -> tuple[Array, Array]:
         """The force and torque for accelerations of a body at rest, by direction."""
