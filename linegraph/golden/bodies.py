@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from linegraph.exchange import DRIVEN, RESTING
 from linegraph.loads import efforts
 from linegraph.united import network_entries
 from linegraph.vector import ZERO, add, is_zero, times
@@ -141,8 +142,17 @@ class Bodies:
         size, first = size + parts, self.walk.tree.layout.mechanical
         # of mechanics alone: what networks store may be of any size beside it
         size[:first] = self._with_noise(size[:first])
-        size[first:] += self._loop_noise()
+        size[first:] += self._loop_noise() + self._of_laws(RESTING)
         return total - acting, size
+
+    def _of_laws(self, what: str) -> Array:
+        """How large the terms are that the forces on states of networks are sums of."""
+        np, number = self.walk.np, self.walk.number
+        exchange = self.walk.numeric.exchange(self.walk.q, self.walk.v)
+        if exchange is None:
+            return np.zeros(0)
+        rows = exchange.network.part_sizes[what][: len(exchange.network.states)]
+        return np.abs([number(exchange.still(x)) for x in rows])
 
     def _loop_noise(self) -> Array:
         """How large the terms of an algebraic loop are in F of the network's states.
@@ -201,7 +211,9 @@ class Bodies:
         nothing = [0.0] * len(self.walk.v)
         pushed = efforts(self.walk.tree, numeric.algebra, chords, nothing)
         pushed = np.array([self.walk.number(x) for x in pushed])
-        return driven + pushed, size + np.abs(pushed)
+        size = size + np.abs(pushed)
+        size[self.walk.tree.layout.mechanical :] += self._of_laws(DRIVEN)
+        return driven + pushed, size
 
     @cached_property
     def energy(self) -> Valued:

@@ -171,6 +171,12 @@ class Network:
         return {"resting": resting, "driven": driven, "all": self.force}
 
     @cached_property
+    def part_sizes(self) -> dict[str, tuple[Scalar, ...]]:
+        """Of F with inputs or without the size of the terms that each row is the sum of."""
+        sizes = Sizes(self.laws.calculus)
+        return {what: tuple(sizes(x) for x in rows) for what, rows in self.parts.items()}
+
+    @cached_property
     def affine(self) -> bool:
         """Whether inputs add to f in proportion: what they drive is then no difference of two values."""
         calculus = self.laws.calculus
