@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
+import targets
 from click.testing import CliRunner
 
 import linegraph as lg
@@ -380,19 +381,20 @@ MUTATED = ("double_pendulum", "four_bar", "cart_pole_motor", "heavy_top")
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """Examples whose programs are mutated: some, or all with ``--all-forms``."""
-    if "mutated_example" in metafunc.fixturenames:
-        every = sorted(path.parent.name for path in EXAMPLES.glob("*/*.toml"))
+    """Models whose programs are mutated: some examples, or all models of tests with ``--all-forms``."""
+    if "mutated_model" in metafunc.fixturenames:
+        every = [name for name in targets.everything() if not name.endswith(targets.MORE)]
         wanted = every if metafunc.config.getoption("--all-forms") else MUTATED
-        metafunc.parametrize("mutated_example", wanted)
+        metafunc.parametrize("mutated_model", wanted)
 
 
 def test_mutants_of_the_equations_are_seen(
-    monkeypatch: pytest.MonkeyPatch, mutated_example: str, request: pytest.FixtureRequest
+    monkeypatch: pytest.MonkeyPatch, mutated_model: str, request: pytest.FixtureRequest
 ) -> None:
     """Signs, constants, indices and operands of M, h and forward dynamics, one at a time."""
-    count = 32 if request.config.getoption("--all-forms") else 8
-    tried, found = missed(monkeypatch, example(mutated_example), count, 7)
+    count = 13 if request.config.getoption("--all-forms") else 8
+    model = targets.everything()[mutated_model]()
+    tried, found = missed(monkeypatch, model, count, 7)
     assert tried >= count // 2
     assert found == []
 
