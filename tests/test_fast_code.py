@@ -310,6 +310,18 @@ def test_many_states_are_as_one_by_one(
     assert done == {"arm": 3, "swing": 4, "rough": 1, "panda": 4, "anymal": 4}[name]
 
 
+def test_a_batch_that_reads_no_rows_compiles_without_a_warning(tmp_path: Path) -> None:
+    """The clipper of the documents: what has a batch is a constant mass matrix, and nothing is gathered."""
+    page = (EXAMPLES.parent / "docs" / "networks.md").read_text("utf-8")
+    blocks = re.findall(r"^```toml\n(.*?)^```", page, re.M | re.S)
+    text = next(block for block in blocks if 'name = "clipper"' in block)
+    module = module_for(modelfile.parse(text.encode(), "clipper.toml"), "clipper")
+    files = codegen.render(module, "c", WAYS["batch"])
+    assert "clipper_mass_matrix_batch(" in files["clipper.h"]
+    assert "_gather(" not in files["clipper.c"]
+    Compiled(files, "clipper", tmp_path)  # warnings are errors
+
+
 def test_the_header_says_what_cannot_be_had_for_many_states(tmp_path: Path) -> None:
     header = codegen.render(samples.arm(), "c", WAYS["batch"])["arm.h"]
     assert "void arm_equations_batch(int n,\n" in header
