@@ -37,8 +37,9 @@ BEGINS = (0.0, 1.0, -1.0)
 RESISTANCES = (1.0, 1e3, 1e-3)
 """The resistance (ohm, or what the subspace has) by which currents are compared with voltages."""
 
-NEAR = 0.01
-"""Where the search with resistances begins; not at zero, where roots are steep and powers flat."""
+NEAR, NEARER = 0.01, 12
+"""Where the search with resistances begins; not at zero, where roots are steep and powers flat. It begins at a
+tenth of that, up to so many times, where exponentials overflow."""
 
 LEVELS = 24
 FIRST, RATIO = 0.5, 0.31622776601683794
@@ -176,8 +177,10 @@ def _nearer(
     for _ in range(MOST_HALVINGS):
         ahead = [a + length * b for a, b in zip(at.x, step, strict=True)]
         found = evaluate(ahead, series, parallel)
-        usable = found.solved or not found.steep
-        if usable and found.gap <= (1 - DECREASE * length) * at.gap:
+        # rows have roundings of their own: the largest residual need not fall where all become rounding
+        if series == 0 and found.solved and not at.solved:
+            return found
+        if not found.steep and found.gap <= (1 - DECREASE * length) * at.gap:
             return found
         length /= 2
     return None
@@ -187,6 +190,10 @@ def _followed(evaluate: Evaluate, size: int, resistance: float) -> _Point:
     """The solution that is reached as resistances at the laws vanish."""
     x = [NEAR * (1 + i / 8) for i in range(size)]
     ease = FIRST
+    for _ in range(NEARER):
+        if evaluate(x, ease * resistance, ease / resistance).gap < math.inf:
+            break
+        x = [value / 10 for value in x]
     for _ in range(LEVELS):
         x = _run(evaluate, x, ease * resistance, ease / resistance).x
         ease *= RATIO
