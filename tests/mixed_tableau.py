@@ -254,6 +254,11 @@ def _element(at: At) -> None:
     at.out.heat = at.X[0] * at.Y[0]
 
 
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)
+HALVES = ((_NODES + 1) / 2, _WEIGHTS / 2)
+"""Places and weights of Gauss and Legendre's integral from 0 to 1."""
+
+
 def _kept_across(constant: Callable[[At], Any], charge: str = "") -> Callable[[At], None]:
     return lambda at: _kept(at, at.X[0], at.Y[0], "x", constant, charge)
 
@@ -266,8 +271,11 @@ def _kept(
     at: At, kept: Array, other: Array, name: str, constant: Callable[[At], Any], charge: str
 ) -> None:
     if charge and at.has(charge):
-        at.out.charges.append((other, 0.0, at(charge, **{name: kept})))
-        at.out.energy = None
+        held = at(charge, **{name: kept})
+        at.out.charges.append((other, 0.0, held))
+        # W = k Q - the integral of Q from 0 to k
+        coenergy = sum(w * at(charge, **{name: kept * x}) for x, w in zip(*HALVES, strict=True))
+        at.out.energy = at.out.energy + kept * (held - coenergy)
     elif at.has("coenergy"):
         at.store(lambda k, _: at("coenergy", **{name: k}), [(kept, other, 0.0)])
     else:
