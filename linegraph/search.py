@@ -67,8 +67,8 @@ class Search:
         self.held = {names.index(name): float(value) for name, value in hold.items()}
         held = [e for e in self.equations if e.holonomic]
         # what an input prescribes is wherever that input says: unless it is known, any position will do
-        known = numeric is not None
-        self.sought = [k for k, e in enumerate(held) if known or not self._by_input(e)]
+        moved = numeric is not None
+        self.sought = [k for k, e in enumerate(held) if moved or not self._by_input(e)]
         self.sizes = self.numeric.sizes
         self.of_velocities = numpy.array(self.sizes.velocities, float)
         self.of_positions = self._of_positions()
