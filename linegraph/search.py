@@ -66,8 +66,9 @@ class Search:
                 raise ModelError(f'coordinate "{name}"', f"is none of this tree; known: {known}")
         self.held = {names.index(name): float(value) for name, value in hold.items()}
         held = [e for e in self.equations if e.holonomic]
-        # what an input prescribes is wherever that input says: any position will do
-        self.sought = [k for k, e in enumerate(held) if not self._by_input(e)]
+        # what an input prescribes is wherever that input says: unless it is known, any position will do
+        moved = numeric is not None
+        self.sought = [k for k, e in enumerate(held) if moved or not self._by_input(e)]
         self.sizes = self.numeric.sizes
         self.of_velocities = numpy.array(self.sizes.velocities, float)
         self.of_positions = self._of_positions()

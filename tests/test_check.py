@@ -541,3 +541,30 @@ def test_a_mass_on_an_axis_has_none_about_it_but_for_rounding() -> None:
     model = example("crane")
     model.formulation(coordinates="absolute")
     assert checking.check(lg.derive(model)).good
+
+
+DRIVEN = """
+[body.b]
+mass = 2
+inertia = [1, 1, 1]
+[body.c]
+mass = 1
+mass_center = [0, 0, -0.5]
+inertia = [0.1, 0.1, 0.1]
+[prismatic.p]
+between = ["ground", "b"]
+axis = [1, 0, 0]
+[revolute.r]
+between = ["b", "c"]
+axis = [0, 1, 0]
+[driver.d]
+between = ["ground", "b"]
+x = "input"
+"""
+
+
+def test_a_body_that_an_input_moves_is_drawn_where_the_input_says() -> None:
+    model = parsed(DRIVEN)
+    found = checking.check(lg.derive(model))
+    assert found.good
+    assert "multipliers" in {c.what for c in found.comparisons}
