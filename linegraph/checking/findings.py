@@ -9,8 +9,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 _LEAST = 1e-300
-TOLERANCE = 1e-11
-"""Worst difference that rounding explains, relative to the terms that a number is made of."""
+TOLERANCE = 2e-12
+"""Worst difference that rounding explains, relative to the terms that a number is made of: seldom 1e-13."""
 
 PROGRAM, FLOATS, PAPER, LOOPS = "emitted program", "derivation over floats", "paper", "loops"
 POWER, AUDIT, COMPONENTS = "power", "audit", "components"
