@@ -192,7 +192,7 @@ def _of_reduction(n: Counts) -> Frame:
 def _of_linearization(n: Counts, free: int) -> Frame:
     v, c, i, t = n["NV"], n["NC"], n["NI"], n["NT"]
     width, sides = t + v + n["NU"], n["NDX"] + n["NU"]
-    vectors = 6 * v + 4 * c + width
+    vectors = 6 * v + 5 * c + width
     matrices = v * v + c * v + (v + c) * width + c * t + t * t + v * i
     return Frame(
         doubles=5 + vectors + matrices + (v + c + free) * free + (v + c + i) * free + i * sides,

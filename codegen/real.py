@@ -43,7 +43,7 @@ _FLOAT = {
     "residual": "5e-5",
     "rounding": "2e-7",
     "step": "5e-6",
-    "still": "5e-7",
+    "still": "1e-7",
     "closed": "2e-5",
     "accurate": "2e-2",
     "far": "1e-2",

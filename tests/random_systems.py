@@ -32,6 +32,8 @@ Array = np.ndarray
 Values = Mapping[str, Any]
 Law = tuple[str, Callable[[float, float, Values], float]]
 """A law as text for the model, and as a function of x, v and all that has a name."""
+Stored = tuple[Callable[[float, Values], float], Callable[[float, Values], float]]
+"""An energy as a function of x and of values by name, and its derivative with respect to x."""
 
 BASEMENT = "basement"
 SINGLE = ("revolute", "prismatic", "helical")
@@ -128,11 +130,17 @@ class Scene:
 
 @dataclass(frozen=True)
 class Force:
-    """An element or load: generalised forces (nv,) on a scene, and whether inputs drive it."""
+    """An element or load: generalised forces (nv,) on a scene, and whether inputs drive it.
+
+    Attributes:
+        potential: the energy (J) that the element stores, where it is known.
+        conservative: the part of the forces that this energy belongs to.
+    """
 
     act: Callable[[Scene], Array]
     driven: bool = False
     potential: Callable[[Scene], float] | None = None
+    conservative: Callable[[Scene], Array] | None = None
 
 
 @dataclass
@@ -211,8 +219,9 @@ def expected(system: System, state: State, tau: Array) -> Expected:
         acting = force.act(scene)
         sums["driven" if force.driven else "passive"] += acting
         if force.potential is not None:
+            assert force.conservative is not None
             potential += force.potential(scene)
-            sums["conservative"] += acting
+            sums["conservative"] += force.conservative(scene)
     efforts = sums["driven"][own]
     efforts[system.effort_places] += tau
     return Expected(
@@ -650,7 +659,7 @@ class _Forces:
 
     def _element(
         self, word: str, options: dict[str, Any], law: Callable[[float, float, Values], float],
-        driven: bool = False, energy: Callable[[float], float] | None = None,
+        driven: bool = False, energy: Stored | None = None,
     ) -> None:  # fmt: skip
         place, across = self._place()
         getattr(self.model, word)(self._name(), **place, **options)
@@ -659,8 +668,19 @@ class _Forces:
             x, v, along = across(scene)
             return -law(x, v, scene.values) * along
 
-        stored = None if energy is None else lambda scene: energy(across(scene)[0])
-        self.system.forces.append(Force(act, driven, stored))
+        if energy is None:
+            self.system.forces.append(Force(act, driven))
+            return
+        held, tension = energy
+
+        def stored(scene: Scene) -> float:
+            return float(held(across(scene)[0], scene.values))
+
+        def kept(scene: Scene) -> Array:
+            x, _, along = across(scene)
+            return -tension(x, scene.values) * along
+
+        self.system.forces.append(Force(act, driven, stored, kept))
 
     def _spring(self) -> None:
         symbolic, k = bool(self.rng.random() < 0.4), float(self.rng.uniform(5, 50))
@@ -670,7 +690,7 @@ class _Forces:
             "spring",
             {"stiffness": "k" if symbolic else k, "length": length},
             lambda x, v, s: k * (x - length),
-            energy=lambda x: k * (x - length) ** 2 / 2,
+            energy=(lambda x, s: k * (x - length) ** 2 / 2, lambda x, s: k * (x - length)),
         )
 
     def _sprung(self) -> None:
@@ -680,6 +700,7 @@ class _Forces:
             {"force": text, "length": length},
             lambda x, v, s: law(x - length, v, s),
             driven=_driven(text),
+            energy=_stored(text, length),
         )
 
     def _damper(self) -> None:
@@ -715,11 +736,20 @@ class _Forces:
             above = push(x - limits["upper"], v) if "upper" in limits else 0.0
             return above - (push(limits["lower"] - x, -v) if "lower" in limits else 0.0)
 
-        self._element("stop", {**limits, "stiffness": k, "damping": c, "width": width}, law)
+        def held(depth: float) -> float:
+            root = np.hypot(depth, width)
+            return float(k * (depth * (depth + root) + width**2 * np.arcsinh(depth / width)) / 4)
+
+        def energy(x: float, s: Values) -> float:
+            above = held(x - limits["upper"]) if "upper" in limits else 0.0
+            return above + (held(limits["lower"] - x) if "lower" in limits else 0.0)
+
+        options = {**limits, "stiffness": k, "damping": c, "width": width}
+        self._element("stop", options, law, energy=(energy, lambda x, s: law(x, 0.0, s)))
 
     def _law(self) -> None:
         text, law = self._random_law()
-        self._element("law", {"force": text}, law, driven=_driven(text))
+        self._element("law", {"force": text}, law, driven=_driven(text), energy=_stored(text))
 
     def _random_law(self) -> Law:
         names = [*self.system.names, *self.system.driven_names]
@@ -783,6 +813,32 @@ LAWS: tuple[Law, ...] = (
     ("acos(sin(v))*tan(t/4)", lambda x, v, s: np.arccos(np.sin(v)) * np.tan(s["t"] / 4)),
     ("(2 + x**2)**-1.5", lambda x, v, s: (2 + x**2) ** -1.5),
 )
+
+STORED: dict[str, Stored] = {
+    "3.1*x**3 + v/5": (lambda x, s: 3.1 * x**4 / 4, lambda x, s: 3.1 * x**3),
+    "k*sin(x) - 0.3*tanh(2*v)": (
+        lambda x, s: s["k"] * (1 - np.cos(x)),
+        lambda x, s: s["k"] * np.sin(x),
+    ),
+    "max(x, 0.2)*sqrt(1 + v**2)": (
+        lambda x, s: 0.2 * x if x < 0.2 else x**2 / 2 + 0.02,
+        lambda x, s: np.fmax(x, 0.2),
+    ),
+    "sinh(x/9) + cosh(v/9)": (
+        lambda x, s: 9 * (np.cosh(x / 9) - 1) + x,
+        lambda x, s: np.sinh(x / 9) + 1,
+    ),
+}
+"""What laws store: their integral over x at rest. Of the others none is known, or it is zero."""
+
+
+def _stored(text: str, length: float = 0.0) -> Stored | None:
+    """What a law of the stretch x - length stores."""
+    if text not in STORED:
+        return None
+    held, tension = STORED[text]
+    return lambda x, s: held(x - length, s), lambda x, s: tension(x - length, s)
+
 
 LOADS: tuple[Law, ...] = (
     ("0", lambda x, v, s: 0.0),

@@ -120,9 +120,7 @@ def compared(model: lg.Model, coordinates: str, seed: int = 0) -> float:
     return max(float(np.abs(a[key] - b[key]).max(initial=0)) for key in a) / size
 
 
-ALLOWED = (
-    "no branch of the tree|put it in a joint that is a branch|moves no inertia|is not a finite number"
-)
+ALLOWED = "no branch of the tree|put it in a joint that is a branch|moves no inertia|is not a finite number"
 """Why a model cannot have such coordinates, or not be compared at such a state: never moved otherwise."""
 
 

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 MODELS = ("double_pendulum", "crane", "four_bar", "condenser_microphone", "tree3", "loop1", "panda")
 ACCURACY = 1e-5
+ROUNDINGS = 30
+"""How many times what rounding its arguments does a function may be off; see docs/embedding.md."""
 
 pytestmark = pytest.mark.skipif(
     bool(targets.missing("arm-none-eabi-gcc", "qemu-system-arm")),
@@ -42,13 +44,21 @@ def test_results_are_those_of_this_machine(name: str, optimised: str, tmp_path: 
     here = targets.compiled(files, tmp_path / "here", COMPILERS["gcc"], ("-O1",))
     found = targets.shown(targets.on_cortex_m4(text, board))
     wanted = targets.shown(targets.on_this_machine(text, here))
+    beside = []
+    for _ in range(3):
+        shaken = targets.harness(module, [targets.shaken(s, rng) for s in states], "float")
+        beside.append(targets.shown(targets.on_this_machine(shaken, here)))
     assert [row[:2] for row in found] == [row[:2] for row in wanted]
     assert len(found) >= len(states) * (len(module.programs) - 1)
-    for (function, status, own), (_, _, other) in zip(found, wanted, strict=True):
+    for k, ((function, status, own), (_, _, other)) in enumerate(zip(found, wanted, strict=True)):
         if status == 0:
-            # both round as they go, the board with fused multiplications
+            # both round as they go, the board with fused multiplications; where a function is badly
+            # conditioned, that may be some times what rounding its arguments does
+            near = [row[2] - other for row in (rows[k] for rows in beside) if row[1] == 0]
+            moved = max((np.abs(x).max(initial=0.0) for x in near), default=0.0)
             size = np.abs(other).max(initial=0.0)
-            assert np.abs(own - other).max(initial=0.0) <= ACCURACY * size, function
+            most = max(ACCURACY * size, ROUNDINGS * moved)
+            assert np.abs(own - other).max(initial=0.0) <= most, function
 
 
 @pytest.mark.parametrize("name", ["panda", "four_bar+", "ring_modulator"])

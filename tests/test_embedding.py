@@ -141,6 +141,9 @@ def test_nothing_but_floats_is_written(name: str) -> None:
 def test_doubles_and_floats_differ_in_nothing_else(name: str) -> None:
     """Every word but types, functions, numbers and tolerances is the same."""
     said = [bare(emitted(name, x)["model.c"]) for x in real.NAMES]
+    # floats want C99, doubles do not: the check of that is their own
+    said = [re.sub(r"#if [^\n]*\n#error[^\n]*\n#endif\n", "", text) for text in said]
+    said = [re.sub(r"\n+", "\n", text) for text in said]
     number = r"(?<![\w.])\d[\d.]*(e[+-]?\d+)?F?"
     first = re.sub(number, "0", said[0].replace("double", "float").replace("HUGE_VAL", "HUGE_VALF"))
     first = re.sub(rf"\b({MATH})\(", r"\1f(", first)
