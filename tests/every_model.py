@@ -29,11 +29,12 @@ from linegraph.programs import OF_FRAMES, PROGRAMS, module_of
 from linegraph.trees import candidates, table
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from linegraph import Model
+    from linegraph.bounds import Interval
     from linegraph.derive import Derivation
-    from linegraph.program import Module, Program
+    from linegraph.program import Module, Program, Quantity
 
     Maker = Callable[[], Model]
 
@@ -209,15 +210,20 @@ def _calls(
     draw = random.Random(seed)
     time = draw.uniform(0, 1)
     reach = 0.5 if derivation.structure.network is None else 0.1
-    inputs = [draw.uniform(-reach, reach) for _ in module.inputs]
+    bounds = derivation.model.bounds
+
+    def some(quantities: Iterable[Quantity], within: Mapping[str, Interval], most: float) -> Any:
+        return [draw.uniform(*within.get(x.name, (-most, most))) for x in quantities]
+
+    inputs = some(module.inputs, bounds.inputs, reach)
     numeric = derivation.numeric(t=time, u=inputs)
     tree = numeric.tree
     if tree.closed:
         q, v = consistent(derivation, numeric, draw)
     else:
-        q = [draw.uniform(-0.7, 0.7) for _ in tree.positions]
+        q = some(tree.positions, bounds.coordinates, 0.7)
         tree.normalise(q)
-        v = [draw.uniform(-reach, reach) for _ in tree.velocities]
+        v = some(tree.velocities, bounds.velocities, reach)
     values = {"t": time, "q": q, "v": v, "u": inputs, "x": [*q, *v]}
     values["p"] = getattr(found, "DEFAULT_PARAMETERS", None)
     if hasattr(found, "prepare"):
