@@ -38,8 +38,8 @@ RESISTANCES = (1.0, 1e3, 1e-3)
 """The resistance (ohm, or what the subspace has) by which currents are compared with voltages."""
 
 NEAR, NEARER = 0.01, 12
-"""Where the search with resistances begins; not at zero, where roots are steep and powers flat. It begins at a
-tenth of that, up to so many times, where exponentials overflow."""
+"""Where the search with resistances begins; not at zero, where roots are steep and powers flat. It begins at
+a tenth of that, up to so many times, where exponentials overflow."""
 
 LEVELS = 24
 FIRST, RATIO = 0.5, 0.31622776601683794
