@@ -208,9 +208,9 @@ def _calls(
 ) -> Iterator[tuple[Program | Routine, list[Any]]]:
     """Every function with arguments at a drawn state, which satisfies the constraints."""
     draw = random.Random(seed)
-    time = draw.uniform(0, 1)
-    reach = 0.5 if derivation.structure.network is None else 0.1
     bounds = derivation.model.bounds
+    time = draw.uniform(*(bounds.t or (0, 1)))
+    reach = 0.5 if derivation.structure.network is None else 0.1
 
     def some(quantities: Iterable[Quantity], within: Mapping[str, Interval], most: float) -> Any:
         return [draw.uniform(*within.get(x.name, (-most, most))) for x in quantities]
