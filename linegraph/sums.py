@@ -46,6 +46,8 @@ class Combination(NamedTuple):
         factors: the number of each term, in order of first appearance; that of `CONSTANT` is added as it is.
         operations: how many operations made it so.
         repeats: whether a term or a number occurred twice.
+        risky: whether a constant that stays occurred twice, once in a difference: (x - p) + (y - p) may be
+            small where x, y and p are not, so that x + y - 2 p would lose its digits.
         leaves: the indices of the nodes that it was made of, as often as they were used.
     """
 
@@ -53,6 +55,7 @@ class Combination(NamedTuple):
     operations: int
     repeats: bool
     leaves: list[int]
+    risky: bool = False
 
     @property
     def cost(self) -> int:
@@ -63,26 +66,40 @@ class Combination(NamedTuple):
     @property
     def better(self) -> bool:
         """Whether to write the sum anew."""
+        if self.risky:
+            return False
         if not self.repeats and self.operations < len(self.factors) + 1:
             return False  # nothing but additions, or one product with a number
         return self.cost < self.operations or (self.repeats and self.cost == self.operations)
 
 
-def collected(program: Program) -> Program:
-    """A program with its sums collected; over a DAG of its own if there was anything to collect.
+def collected(program: Program, dag: Dag | None = None) -> Program:
+    """A program with its sums collected.
 
     Each program is looked at by itself, since what one of them needs twice another may take apart.
     Collecting twice gives what collecting once gives.
+
+    Args:
+        program: any.
+        dag: the DAG that it is to be over; if left out one of its own, where there is anything to collect.
     """
+    plan = Sums(program).plans()
+    if dag is None and not plan:
+        return program
+    dag = Dag() if dag is None else dag
+    program = _Rewriting(plan, dag).of(program)
+    # what is written anew may leave others alone with a term
     while plan := Sums(program).plans():
-        # what is written anew may leave others alone with a term
-        program = _Rewriting(plan).of(program)
+        program = _Rewriting(plan, dag).of(program)
     return program
 
 
 def with_sums_collected(programs: Sequence[Program | Routine]) -> tuple[Program | Routine, ...]:
-    """The same for all programs; routines have no sums."""
-    return tuple(collected(x) if isinstance(x, Program) else x for x in programs)
+    """The same for all programs, over one DAG: what they share stays the same node. Routines have no sums."""
+    dag = Dag()
+    found = tuple(collected(x, dag) if isinstance(x, Program) else x for x in programs)
+    dag.release()
+    return found
 
 
 class Sums:
@@ -170,9 +187,11 @@ class Sums:
         factors: dict[Key, Number] = {}
         leaves: list[int] = []
         operations, repeats = 0, False
-        pending: list[tuple[Operand, Number]] = [(node, 1)]
+        twice: set[Key] = set()
+        differing: set[Key] = set()
+        pending: list[tuple[Operand, Number, bool]] = [(node, 1, False)]
         while pending:
-            x, k = pending.pop()
+            x, k, difference = pending.pop()
             key: Key = CONSTANT
             if not isinstance(x, Node):
                 k *= x
@@ -186,20 +205,25 @@ class Sums:
                         if x is not node:
                             self._inner[index] = node.index
                         if x.op == MUL:
-                            pending.append((x.a, k * x.b))
+                            pending.append((x.a, k * x.b, difference))
                         else:
-                            pending += ((x.b, -k if x.op == SUB else k), (x.a, k))
+                            less = x.op == SUB
+                            pending += ((x.b, -k if less else k, less), (x.a, k, less))
                         continue
                     if index in self._numbers:
                         number, key, taken = self._split(x)
                         k, operations = k * number, operations + taken
                 leaves.append(index)
+            if difference and isinstance(x, Node) and x.op == SYMBOL and x.a in ("p", "c"):
+                differing.add(key)
             if key in factors:
                 repeats = True
+                twice.add(key)
                 _gather(factors, key, k)
             else:
                 factors[key] = k
-        return Combination(factors, operations, repeats, leaves)
+        risky = any(key in factors for key in twice & differing)
+        return Combination(factors, operations, repeats, leaves, risky)
 
     def _replace(self, combination: Combination) -> None:
         """From now on a sum needs the terms it is to be written with, and its leaves no longer."""
@@ -250,16 +274,16 @@ class Sums:
 
 
 class _Rewriting:
-    """A program over a DAG of its own, some of its sums written anew.
+    """A program over another DAG, some of its sums written anew.
 
     Nodes are made in the order in which they were derived: as they were, as long as all that they are made of
     is, too.
     """
 
-    def __init__(self, plan: Mapping[int, Combination]) -> None:
+    def __init__(self, plan: Mapping[int, Combination], dag: Dag) -> None:
         """Keep what the sums become, by the index of the node that is the whole."""
         self._plan = plan
-        self._dag = Dag()
+        self._dag = dag
         self._known: dict[int, Operand] = {}
 
     def of(self, program: Program) -> Program:

@@ -310,11 +310,18 @@ def printed_constraints_are_those_of_the_derivation(name: str) -> None:
     numeric = d.numeric()
     found: dict[str, str] = {}
     known = values_of(d, q, v, dict.fromkeys(Subject(d).u_names, 0.0))
+    readers: dict[str, Reader] = {}
     for title in ("Equations of motion", "Constraints of the loops"):
         section = section_of(name, title)
         known = walked(section, known)
-        found |= equations_in(section)
-    reader = Reader(known)
+        # each section has intermediates of its own
+        stated = equations_in(section)
+        readers |= dict.fromkeys(stated, Reader(dict(known)))
+        found |= stated
+
+    def reader(entry: str) -> float:
+        return next(readers[key] for key, text in found.items() if text == entry)(entry)
+
     J = numeric.constraint_jacobian(q)
     for i, row in enumerate(J):
         for j, x in enumerate(row):
