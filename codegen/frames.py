@@ -201,4 +201,4 @@ def _of_linearization(n: Counts, free: int) -> Frame:
 
 
 def _of_newton(size: int) -> Frame:
-    return Frame(doubles=8 + size * size + 6 * size, ints=21 + 2 * size)
+    return Frame(doubles=8 + size * size + 6 * size, ints=22 + 2 * size)

@@ -49,6 +49,9 @@ LEVEL_STEPS = 50
 LEVEL_GAP = 1e-9
 """A level is solved when its residual has fallen to this part of what it was."""
 
+MISSED, MOST_MISSED = 1e-3, 3
+"""A level is missed if more than this part of its residual is left; so many in turn, and the way ends."""
+
 ROUNDING = 1e-13
 """A residual below this fraction of its terms is zero."""
 
@@ -116,9 +119,9 @@ def solved(network: Network, known: Callable[[Symbol], float]) -> Vector:
         if found.solved:
             return _only(evaluate, found)
     for resistance in RESISTANCES:
-        found = _followed(evaluate, size, resistance)
-        if found.solved:
-            return _only(evaluate, found)
+        reached = _followed(evaluate, size, resistance)
+        if reached is not None and reached.solved:
+            return _only(evaluate, reached)
     raise ModelError("model", "the algebraic loop of its network has no solution here")
 
 
@@ -186,16 +189,22 @@ def _nearer(
     return None
 
 
-def _followed(evaluate: Evaluate, size: int, resistance: float) -> _Point:
-    """The solution that is reached as resistances at the laws vanish."""
+def _followed(evaluate: Evaluate, size: int, resistance: float) -> _Point | None:
+    """What is reached as resistances at the laws vanish; None where levels on the way have no solution."""
     x = [NEAR * (1 + i / 8) for i in range(size)]
     ease = FIRST
     for _ in range(NEARER):
         if evaluate(x, ease * resistance, ease / resistance).gap < math.inf:
             break
         x = [value / 10 for value in x]
+    missed = 0
     for _ in range(LEVELS):
-        x = _run(evaluate, x, ease * resistance, ease / resistance).x
+        start = evaluate(x, ease * resistance, ease / resistance)
+        found = _run(evaluate, x, ease * resistance, ease / resistance)
+        missed = missed + 1 if found.gap > MISSED * start.gap else 0
+        if missed == MOST_MISSED:
+            return None
+        x = found.x
         ease *= RATIO
     return _run(evaluate, x, 0.0, 0.0)
 
