@@ -385,7 +385,7 @@ LABELS = {
     "mass_matrix": {"carried by turn -> arm", "mass matrix, swing -> rod"},
     "bias": {"joint swing", "motion, turn -> arm", "forces, swing -> rod"},
     "inverse_dynamics": {"forces, x -> cart"},
-    "energy": {"kinetic energy, x -> cart", "potential energy, swing -> rod"},
+    "energy": {"kinetic energy, swing -> rod", "potential energy, x -> cart"},
     "coordinate_rates": set(),
 }
 

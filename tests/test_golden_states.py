@@ -87,7 +87,8 @@ def test_exponential_laws_hide_nothing() -> None:
     """Diodes at two volts of a source carry 1e11 A; beside that no capacitor's milliamperes are seen."""
     model = read("ring_modulator")
     vectors = golden.vectors(lg.derive(model), module_for(model, "m", only=("bias",)))
-    assert max(vectors.values["h"].scale) < 100
+    # two volts of ten kilohertz have a phase of 1e5 at most, and rounding of that is what is left
+    assert max(vectors.values["h"].scale) < 1e5
     assert min(vectors.values["h"].scale) > 1e-3
 
 

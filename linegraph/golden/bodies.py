@@ -80,7 +80,7 @@ class Bodies:
     def mass_matrix(self) -> Valued:
         """M, with what networks store; networks by their laws in numbers."""
         np, n = self.walk.np, len(self.walk.v)
-        total, diagonal, turned = np.zeros((n, n), self.walk.number), np.zeros(n), np.zeros(n)
+        total, diagonal = np.zeros((n, n), self.walk.number), np.zeros(n)
         for body in self.heavy:
             linear, angular = body.moved.linear[:, :-1], body.moved.angular[:, :-1]
             force, torque = self.needed(body, linear, angular)
@@ -88,16 +88,24 @@ class Bodies:
             # a slender body has none about its axis, but for the rounding of the rest
             diagonal += np.linalg.norm(body.inertia) * np.square(np.abs(angular)).sum(axis=0)
             diagonal += abs(body.mass) * np.square(np.abs(linear)).sum(axis=0)
-            arms = np.square(np.abs(body.moved.origin - self._origins)).sum(axis=1)
-            turned += abs(body.mass) * arms * np.square(np.abs(angular)).sum(axis=0)
         for i, j, entry in network_entries(
             self.walk.numeric.exchange(self.walk.q, self.walk.v), self.walk.numeric.algebra
         ):
             total[i, j] += self.walk.number(entry)
-        # the same mass aside of an axis: on it there is none, but for the rounding of directions
-        diagonal = np.maximum(diagonal, NOISE**2 * turned)
+        # a mass on an axis has none about it, but for the rounding of directions
+        diagonal = np.maximum(diagonal, NOISE**2 * self._aside)
         diagonal = np.sqrt(np.maximum(diagonal, np.abs(np.diag(total))))
         return total, np.maximum(np.abs(total), np.outer(diagonal, diagonal))
+
+    @cached_property
+    def _aside(self) -> Array:
+        """By velocity, the inertia of all masses if they stood aside of what they turn about."""
+        np, found = self.walk.np, self.walk.np.zeros(len(self.walk.v))
+        for body in self.heavy:
+            arms = np.square(np.abs(body.moved.origin - self._origins)).sum(axis=1)
+            turned = np.square(np.abs(body.moved.angular[:, :-1])).sum(axis=0)
+            found += abs(body.mass) * arms * turned
+        return found
 
     @cached_property
     def _origins(self) -> Array:
@@ -180,7 +188,8 @@ class Bodies:
         |M_ij| <= sqrt(M_ii M_jj): so much of one may be rounding in another.
         """
         np = self.walk.np
-        roots = np.sqrt(np.diag(self.mass_matrix[1])[: len(size)])
+        inertia = np.maximum(np.diag(self.mass_matrix[1]), self._aside)
+        roots = np.sqrt(inertia[: len(size)])
         roots = np.where(roots > 0, roots, roots.max(initial=0.0) or 1.0)
         return np.maximum(size, NOISE * roots * (size / roots).max(initial=0.0))
 
