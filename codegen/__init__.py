@@ -15,8 +15,8 @@ from codegen.options import DEFAULT, REAL, TRIG, Options, options_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from linegraph.program import Module
-    from linegraph.vectors import Vectors
+    from linegraph.ir.golden_vectors import Vectors
+    from linegraph.ir.program import Module
 
     Render = Callable[[Module, Options], Mapping[str, str]]
     RenderTests = Callable[[Module, Vectors, Options], Mapping[str, str]]

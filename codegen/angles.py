@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from codegen.order import Step
-from linegraph.expression import SYMBOL, Node
-from linegraph.functions import ARITY
-from linegraph.program import INLINE_LIMIT
+from linegraph.ir.dag import SYMBOL, Node
+from linegraph.ir.functions import ARITY
+from linegraph.ir.program import INLINE_LIMIT
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 from codegen import declare, layout, prose, straight
 from codegen.frames import Frame
 from codegen.straight import SHARED, Kind
-from linegraph.functions import ARITY
-from linegraph.program import PREPARED_SUFFIX, Program
+from linegraph.ir.functions import ARITY
+from linegraph.ir.program import PREPARED_SUFFIX, Program
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from codegen.frames import Definition
-    from linegraph.program import Argument, Module, Result, Routine
+    from linegraph.ir.program import Argument, Module, Result, Routine
 
 NAMES = (
     "mass_matrix",

@@ -26,13 +26,13 @@ from codegen.declare import block, comment, string
 from codegen.frames import Definition
 from codegen.options import DEFAULT
 from codegen.printer import number
-from linegraph.program import Routine
+from linegraph.ir.program import Routine
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from codegen.options import Options
-    from linegraph.program import Listing, Module, Program, Quantity
+    from linegraph.ir.program import Listing, Module, Program, Quantity
 
 
 def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:

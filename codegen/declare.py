@@ -9,7 +9,7 @@ from codegen import layout, prose
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from linegraph.program import Argument, Module, Program, Result, Routine
+    from linegraph.ir.program import Argument, Module, Program, Result, Routine
 
 _WIDTH = 100
 

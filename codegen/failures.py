@@ -9,11 +9,11 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from codegen import naming
-from linegraph.program import Routine, Status
-from linegraph.statuses import NOT_FINITE, NOT_FINITE_INPUT
+from linegraph.ir.program import Routine, Status
+from linegraph.ir.statuses import NOT_FINITE, NOT_FINITE_INPUT
 
 if TYPE_CHECKING:
-    from linegraph.program import Module, Program
+    from linegraph.ir.program import Module, Program
 
 OK = "OK"
 """The name of 0."""

@@ -10,12 +10,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
-from linegraph.functions import ARITY
+from linegraph.ir.functions import ARITY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from linegraph.program import Routine
+    from linegraph.ir.program import Routine
 
 MANY = 100
 """Statements of a function of templates: more than what is held in registers depends on."""

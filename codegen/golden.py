@@ -15,14 +15,14 @@ from codegen.declare import block, comment
 from codegen.options import DEFAULT
 from codegen.printer import number
 from codegen.python import literal
-from linegraph.vectors import CONSTANTS, RETURNED
+from linegraph.ir.golden_vectors import CONSTANTS, RETURNED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from codegen.options import Options
-    from linegraph.program import Module, Program, Routine
-    from linegraph.vectors import Expected, Then, Vectors
+    from linegraph.ir.golden_vectors import Expected, Then, Vectors
+    from linegraph.ir.program import Module, Program, Routine
 
 DOUBLE = 5e-12
 """Rounding of a double is 1e-16; sums and solutions take some hundred times that, seldom a thousand times."""

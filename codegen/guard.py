@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 from codegen import declare, failures, frames, layout, routines
 from codegen.frames import FUNCTIONS, Definition, Frame
-from linegraph.statuses import NOT_FINITE, NOT_FINITE_INPUT
+from linegraph.ir.statuses import NOT_FINITE, NOT_FINITE_INPUT
 
 if TYPE_CHECKING:
-    from linegraph.program import Argument, Module, Program, Result, Routine
+    from linegraph.ir.program import Argument, Module, Program, Result, Routine
 
 
 def helpers(module: Module) -> list[str]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from codegen import failures, prose
-from linegraph.program import Listing
+from linegraph.ir.program import Listing
 
 if TYPE_CHECKING:
-    from linegraph.program import Module, Quantity, Result
+    from linegraph.ir.program import Module, Quantity, Result
 
 _SIZES = {
     **dict.fromkeys(("q", "qdot", "q_on"), ("NQ",)),

@@ -11,7 +11,7 @@ from linegraph.errors import NameRefused
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from linegraph.program import Module, Program, Routine
+    from linegraph.ir.program import Module, Program, Routine
 
 LONGEST = 128
 """Identifiers are at most this long, so that they also do as file names."""

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from linegraph.expression import SYMBOL, Node
+from linegraph.ir.dag import SYMBOL, Node
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from linegraph.expression import Operand
-    from linegraph.program import Check, Program
+    from linegraph.ir.dag import Operand
+    from linegraph.ir.program import Check, Program
 
 _PARTNERS = {"sin": "cos", "cos": "sin"}
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 from codegen import declare, failures, layout, naming, prose, reserved, templates
 from linegraph.errors import ModelError, NameRefused
-from linegraph.program import PREPARED_SUFFIX
+from linegraph.ir.program import PREPARED_SUFFIX
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from codegen.options import Options
-    from linegraph.program import Module, Program, Routine
+    from linegraph.ir.program import Module, Program, Routine
 
 _TARGETS = frozenset(
     (

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from linegraph.errors import ModelError
-from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL, Node
+from linegraph.ir.dag import ADD, DIV, MUL, NEG, SUB, SYMBOL, Node
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from linegraph.expression import Number, Operand
-    from linegraph.program import Check, Program
+    from linegraph.ir.dag import Number, Operand
+    from linegraph.ir.program import Check, Program
 
 _SIGNED, _SUM, _PRODUCT, _ATOM = range(4)
 """How tightly a text holds together; one that starts with a sign is never an operand as it is."""

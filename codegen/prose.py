@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from linegraph.program import Quantity
+    from linegraph.ir.program import Quantity
 
 WIDTH = 92
 """Wrapped lines are at most this long, before the language puts its comment marks around them."""

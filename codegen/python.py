@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 from codegen import failures, layout, prose, real, routines, straight, templates
 from codegen.options import DEFAULT
 from codegen.printer import Notation, number, print_program
-from linegraph.functions import ARITY
-from linegraph.program import Program, Routine
+from linegraph.ir.functions import ARITY
+from linegraph.ir.program import Program, Routine
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from codegen.options import Options
-    from linegraph.program import Argument, Check, Module, Quantity, Result
+    from linegraph.ir.program import Argument, Check, Module, Quantity, Result
 
 _WIDTH = 96
 

@@ -13,7 +13,7 @@ import struct
 from fractions import Fraction
 
 from linegraph.errors import ModelError
-from linegraph.functions import ARITY
+from linegraph.ir.functions import ARITY
 from linegraph.tolerance import ACCURATE, CLOSED, DEPENDENT
 
 NAMES = ("double", "float")
@@ -53,7 +53,8 @@ _FLOAT = {
     "slack": "1e-2",
 }
 TOLERANCES = {"double": _DOUBLE, "float": _FLOAT}
-"""What algorithms take for rounding. Positions, velocities and rows of J are pure numbers, see `lengths`.
+"""What algorithms take for rounding. Positions, velocities and rows of J are pure numbers, see
+`circuit_lengths`.
 
 rank: entries of J that are zero; pivot: of a mass matrix, beside what it was made of; residual: beside the
 size of its terms; rounding: of a constraint; step, still: corrections that change nothing any more; closed:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from codegen import declare, prose
-from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL
-from linegraph.program import Program
+from linegraph.ir.dag import ADD, DIV, MUL, NEG, SUB, SYMBOL
+from linegraph.ir.program import Program
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from codegen.frames import Definition
-    from linegraph.program import Module, Routine
+    from linegraph.ir.program import Module, Routine
 
 _KINDS = {ADD: 0, SUB: 0, MUL: 1, DIV: 2}
 _HEADINGS = ("+ -", "*", "/", "functions", "variables", "stack", "lines")

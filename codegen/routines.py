@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from codegen import failures, frames, layout, templates
 from codegen.frames import Frame
-from linegraph.program import PREPARED_SUFFIX, Routine
-from linegraph.statuses import NOT_FINITE_INPUT
+from linegraph.ir.program import PREPARED_SUFFIX, Routine
+from linegraph.ir.statuses import NOT_FINITE_INPUT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from linegraph.program import Module, Program
+    from linegraph.ir.program import Module, Program
 
 HELPERS = {
     "constrained_dynamics": (

@@ -15,16 +15,16 @@ from codegen.frames import Definition, Frame
 from codegen.order import Entry, Guard, Step, arranged, paired
 from codegen.parts import cut, places
 from codegen.printer import Notation, Printer, number
-from linegraph.expression import SYMBOL, Node
-from linegraph.functions import ARITY
+from linegraph.ir.dag import SYMBOL, Node
+from linegraph.ir.functions import ARITY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from codegen.order import Item
     from codegen.parts import Part
-    from linegraph.expression import Operand
-    from linegraph.program import Argument, Call, Check, Module, Program
+    from linegraph.ir.dag import Operand
+    from linegraph.ir.program import Argument, Call, Check, Module, Program
 
 OWN = ("sign", "min", "max")
 """Functions of the file itself: that of <math.h> is missing, or it hides what is not a number."""

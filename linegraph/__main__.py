@@ -21,7 +21,7 @@ def main() -> None:
     if hasattr(signal, "SIGPIPE"):
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     try:
-        from linegraph.cli import run
+        from linegraph.cli.main import run
 
         status = run()
         sys.stdout.flush()

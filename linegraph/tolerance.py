@@ -1,7 +1,7 @@
 """How closely loops close, and what counts as nothing: one set of numbers for assembly, checks and run time.
 
 All are pure numbers: positions, velocities and rows of J are first divided by sizes of the model itself, see
-`lengths`.
+`circuit_lengths`.
 """
 
 from __future__ import annotations

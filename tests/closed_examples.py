@@ -16,8 +16,8 @@ from emitted import load
 from scipy.integrate import solve_ivp
 
 import linegraph as lg
-from linegraph import modelfile, urdf
-from linegraph.emission import render
+from linegraph.emission.emit import render
+from linegraph.readers import modelfile, urdf
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,17 +7,8 @@ import random
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL, Dag, Node, Operand
-from linegraph.program import (
-    Argument,
-    Call,
-    Check,
-    Module,
-    Program,
-    Quantity,
-    Result,
-    assemble,
-)
+from linegraph.ir.dag import ADD, DIV, MUL, NEG, SUB, SYMBOL, Dag, Node, Operand
+from linegraph.ir.program import Argument, Call, Check, Module, Program, Quantity, Result, assemble
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -6,12 +6,12 @@ import math
 import operator
 from typing import TYPE_CHECKING, Any
 
-from linegraph.expression import Node
+from linegraph.ir.dag import Node
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from linegraph.program import Module, Program
+    from linegraph.ir.program import Module, Program
 
 BINARY: dict[str, Callable[[Any, Any], Any]] = {
     "add": operator.add,

@@ -8,11 +8,12 @@ from itertools import combinations, pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linegraph import Derivation, derive, modelfile, urdf
+from linegraph import Derivation, derive
 from linegraph.drawing.dot import dot_text
 from linegraph.drawing.pictures import graph_scene, whole_scene
 from linegraph.drawing.scene import Box, Disc, Stroke, flat
 from linegraph.drawing.svg import svg_text
+from linegraph.readers import modelfile, urdf
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

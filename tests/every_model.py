@@ -18,23 +18,25 @@ import targets
 from modelfile_text import LOOP, SMALL, ZOO
 
 import codegen
-from linegraph import LinegraphError, ModelError, checking, derive, modelfile, report, urdf
-from linegraph.assembly import consistent
+from linegraph import LinegraphError, ModelError, derive, report
 from linegraph.drawing.files import picture
-from linegraph.emission import CONVENTIONS
-from linegraph.modelfile.starter import starter
-from linegraph.named_frames import named_frames
-from linegraph.program import Routine
-from linegraph.programs import OF_FRAMES, PROGRAMS, module_of
-from linegraph.trees import candidates, table
+from linegraph.emission.emit import CONVENTIONS
+from linegraph.ir.program import Routine
+from linegraph.numeric.assembly import consistent
+from linegraph.programs.frame_names import named_frames
+from linegraph.programs.register import OF_FRAMES, PROGRAMS, module_of
+from linegraph.programs.tree_costs import candidates, table
+from linegraph.readers import modelfile, urdf
+from linegraph.readers.modelfile.starter import starter
+from linegraph.verification import checking
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from linegraph import Model
-    from linegraph.bounds import Interval
-    from linegraph.derive import Derivation
-    from linegraph.program import Module, Program, Quantity
+    from linegraph.ir.program import Module, Program, Quantity
+    from linegraph.model.bounds import Interval
+    from linegraph.pipeline import Derivation
 
     Maker = Callable[[], Model]
 

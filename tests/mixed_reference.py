@@ -14,17 +14,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from linegraph import Model, derive, orthogonality
-from linegraph.closure import equations
-from linegraph.inverse_scheme import InverseScheme
-from linegraph.loads import efforts
-from linegraph.numeric import Numeric
-from linegraph.parameters import valued
+from linegraph import Model, derive
+from linegraph.components.parameters import valued
+from linegraph.dynamics import orthogonality
+from linegraph.dynamics.applied_forces import efforts
+from linegraph.dynamics.chords import equations
+from linegraph.dynamics.edge_variables import InverseScheme
+from linegraph.numeric.reference import Numeric
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from linegraph.derive import Derivation
+    from linegraph.pipeline import Derivation
 
 Array = Any
 STEP = 1e-30

@@ -19,28 +19,29 @@ import mutants
 import numpy as np
 
 import codegen
-from linegraph import derive, golden
+from linegraph import derive
 from linegraph.errors import ModelError
-from linegraph.golden import states as written
-from linegraph.golden.beside import beside
-from linegraph.golden.draws import Drawing
-from linegraph.golden.point import Kept
-from linegraph.golden.references import references
-from linegraph.named_frames import named_frames
-from linegraph.program import Routine
-from linegraph.programs import OF_FRAMES, PROGRAMS, module_of
-from linegraph.vectors import CONSTANTS, RETURNED
+from linegraph.ir.golden_vectors import CONSTANTS, RETURNED
+from linegraph.ir.program import Routine
+from linegraph.programs.frame_names import named_frames
+from linegraph.programs.register import OF_FRAMES, PROGRAMS, module_of
+from linegraph.verification import golden
+from linegraph.verification.golden import states as written
+from linegraph.verification.golden.beside import beside
+from linegraph.verification.golden.draws import Drawing
+from linegraph.verification.golden.point import Kept
+from linegraph.verification.golden.references import references
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from linegraph import Model
-    from linegraph.derive import Derivation
-    from linegraph.golden.point import Point
-    from linegraph.program import Module
-    from linegraph.tips import NamedFrame
-    from linegraph.vectors import Vectors
+    from linegraph.ir.golden_vectors import Vectors
+    from linegraph.ir.program import Module
+    from linegraph.kinematics.frame_trees import NamedFrame
+    from linegraph.pipeline import Derivation
+    from linegraph.verification.golden.point import Point
 
     Array = Any
 

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from linegraph.algebra import Floats
-from linegraph.differentiation import Replay
-from linegraph.network.equations import network_of
+from linegraph.algebra.differentiation import Replay
+from linegraph.algebra.protocol import Floats
+from linegraph.networks.equations import network_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from linegraph import Model
-    from linegraph.differentiation import Symbol
-    from linegraph.network import Network
+    from linegraph.algebra.differentiation import Symbol
+    from linegraph.networks import Network
 
 Array = Any
 

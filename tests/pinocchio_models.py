@@ -17,14 +17,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from lxml import etree
 
-from linegraph.derive import derive
+from linegraph.pipeline import derive
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from linegraph.model import Model
+    from linegraph.model.builder import Model
 
     Array = NDArray[np.float64]
 

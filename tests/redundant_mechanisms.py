@@ -19,7 +19,7 @@ from random_trees import random_rotation
 from spec_models import numbers, rows
 
 from linegraph import Model
-from linegraph.joints import JOINTS
+from linegraph.components.joints import JOINTS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

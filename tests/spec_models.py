@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from linegraph import Model
-from linegraph.joints import JOINTS
+from linegraph.components.joints import JOINTS
 
 if TYPE_CHECKING:
     import numpy as np

@@ -28,15 +28,16 @@ from numpy.typing import NDArray
 import codegen
 import codegen.layout
 import codegen.real
-from linegraph import ModelError, modelfile, urdf
-from linegraph.emission import module_for
-from linegraph.programs import OF_FRAMES, ON_REQUEST
+from linegraph import ModelError
+from linegraph.emission.emit import module_for
+from linegraph.programs.register import OF_FRAMES, ON_REQUEST
+from linegraph.readers import modelfile, urdf
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from linegraph import Model
-    from linegraph.program import Module, Program, Routine
+    from linegraph.ir.program import Module, Program, Routine
 
 ROOT = Path(__file__).parent.parent
 EXAMPLES = ROOT / "examples"

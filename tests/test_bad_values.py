@@ -17,14 +17,14 @@ from emitted import load
 
 import codegen
 from codegen import failures, layout
-from linegraph.program import Routine
-from linegraph.statuses import COMMON, FIRST, LAST, NOT_FINITE_INPUT
+from linegraph.ir.program import Routine
+from linegraph.ir.statuses import COMMON, FIRST, LAST, NOT_FINITE_INPUT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from linegraph.program import Module, Program
+    from linegraph.ir.program import Module, Program
 
 BAD = (np.nan, np.inf, -np.inf, 1e300, -1e300, 1e160, 1e-300, 5e-324)
 FEW = ("double_pendulum", "four_bar", "network3")

@@ -22,16 +22,17 @@ import sympy
 from click.testing import CliRunner
 from spec_models import model_of
 
-from linegraph import Model, ModelError, derive, modelfile, urdf
-from linegraph.cli import main
-from linegraph.emission import module_for
-from linegraph.parameter_search import in_numbers, regressor_rows
-from linegraph.standard_parameters import axes
-from linegraph.traced import Traced, closed, given, kernel, reduced
+from linegraph import Model, ModelError, derive
+from linegraph.algebra.sampled import Traced, closed, given, kernel, reduced
+from linegraph.cli.main import main
+from linegraph.emission.emit import module_for
+from linegraph.identification.search import in_numbers, regressor_rows
+from linegraph.identification.standard_parameters import axes
+from linegraph.readers import modelfile, urdf
 
 if TYPE_CHECKING:
-    from linegraph.base_parameters import BaseParameters
-    from linegraph.numeric import Numeric
+    from linegraph.identification.base_parameters import BaseParameters
+    from linegraph.numeric.reference import Numeric
 
     Array = Any
 

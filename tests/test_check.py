@@ -12,15 +12,16 @@ import targets
 from click.testing import CliRunner
 
 import linegraph as lg
-from linegraph import checking, modelfile
-from linegraph.checking.report import counted
-from linegraph.cli import main
+from linegraph.cli.main import main
 from linegraph.errors import LinegraphError, ModelError
-from linegraph.expression import ADD, SUB, SYMBOL, Node
-from linegraph.program import Module, Program
+from linegraph.ir.dag import ADD, SUB, SYMBOL, Node
+from linegraph.ir.program import Module, Program
+from linegraph.readers import modelfile
+from linegraph.verification import checking
+from linegraph.verification.checking.report import counted
 
 if TYPE_CHECKING:
-    from linegraph.checking.findings import Findings
+    from linegraph.verification.checking.findings import Findings
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 
@@ -199,7 +200,7 @@ def test_a_door_that_is_counted_as_stuck_is_not_good() -> None:
 
 def test_a_door_moves_by_newton_and_euler() -> None:
     """Under 7 N m about its hinges: 7 / (1 + 10 0.2²) = 5, and one of five constraints binds nothing."""
-    from linegraph.golden.point import Point
+    from linegraph.verification.golden.point import Point
 
     derivation = lg.derive(parsed(DOOR))
     point = Point(derivation, 0.0, [7.0], [0.3], [0.0], [0.0], [0.3], [0.0])
@@ -209,7 +210,7 @@ def test_a_door_moves_by_newton_and_euler() -> None:
 
 @pytest.mark.parametrize("name", ["four_bar", "bricard", "rolling_disc"])
 def test_wrong_freedoms_are_seen(name: str) -> None:
-    from linegraph.checking import run as running
+    from linegraph.verification.checking import run as running
 
     derivation = lg.derive(example(name))
     points, _ = running._points(derivation, 0)
@@ -341,8 +342,8 @@ def missed(
     monkeypatch: pytest.MonkeyPatch, model: lg.Model, count: int, seed: int
 ) -> tuple[int, list[str]]:
     """How many mutants were tried, and those that `check` finds good though they make a difference."""
-    from linegraph.checking import run as running
-    from linegraph.programs import module_of
+    from linegraph.programs.register import module_of
+    from linegraph.verification.checking import run as running
 
     derivation = lg.derive(model)
     module = module_of(derivation, "checked", folded=False, about=())
@@ -463,8 +464,8 @@ def test_check_bounds_what_is_drawn(law: str, check: str) -> None:
 
 
 def test_golden_vectors_keep_the_bounds() -> None:
-    from linegraph import golden
-    from linegraph.emission import module_for
+    from linegraph.emission.emit import module_for
+    from linegraph.verification import golden
 
     model = parsed(SLIDE.format(law="sqrt(flow - 5)", check=""))
     model.check_within(inputs={"flow": (5.5, 9)}, coordinates={"p": (2, 3)})

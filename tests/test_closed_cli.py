@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from linegraph.cli import main
+from linegraph.cli.main import main
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 FOUR_BAR = str(EXAMPLES / "four_bar" / "four_bar.toml")

@@ -20,10 +20,10 @@ from test_derivatives import STEP, Point, above, error
 
 import linegraph as lg
 from linegraph import ModelError, derive
-from linegraph.closed_derivatives import free_changes
-from linegraph.closed_programs import independent
-from linegraph.emission import render
-from linegraph.shared import Functions
+from linegraph.emission.emit import render
+from linegraph.programs.loop_derivatives import free_changes
+from linegraph.programs.loops import independent
+from linegraph.programs.workspace import Functions
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -17,9 +17,9 @@ import pytest
 from emitted import load
 from scipy.integrate import solve_ivp
 
-from linegraph import modelfile
-from linegraph.constraints import CONSTRAINTS
-from linegraph.emission import emit, render
+from linegraph.components.constraints import CONSTRAINTS
+from linegraph.emission.emit import emit, render
+from linegraph.readers import modelfile
 
 if TYPE_CHECKING:
     from collections.abc import Callable

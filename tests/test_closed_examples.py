@@ -24,8 +24,8 @@ from one_freedom import Body, Moving, Pin, course
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
-from linegraph.emission import render
-from linegraph.transfer import body_frames, transfer
+from linegraph.emission.emit import render
+from linegraph.numeric.between_trees import body_frames, transfer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -29,10 +29,10 @@ from sympy.physics import mechanics
 from test_closed_loops import model_of as closed_model
 
 import linegraph as lg
-from linegraph import orthogonality
-from linegraph.closure import equations as chord_equations
-from linegraph.inverse_scheme import InverseScheme
-from linegraph.loads import efforts
+from linegraph.dynamics import orthogonality
+from linegraph.dynamics.applied_forces import efforts
+from linegraph.dynamics.chords import equations as chord_equations
+from linegraph.dynamics.edge_variables import InverseScheme
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -40,8 +40,8 @@ if TYPE_CHECKING:
     from book_forms import Book
 
     from linegraph import Derivation
-    from linegraph.numeric import Numeric
-    from linegraph.symbols import Symbolic
+    from linegraph.numeric.reference import Numeric
+    from linegraph.symbolic.closed_forms import Symbolic
 
 Array = Any
 Expr = Any
@@ -310,7 +310,7 @@ def test_closed_forms_of_linkages_are_the_numbers(name: str, level: str) -> None
 
 @cache
 def example(name: str) -> Derivation:
-    from linegraph.modelfile import read
+    from linegraph.readers.modelfile import read
 
     return lg.derive(read(EXAMPLES / name / f"{name}.toml"))
 

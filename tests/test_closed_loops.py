@@ -24,8 +24,8 @@ from scipy.linalg import null_space
 from spec_models import numbers, rows
 
 from linegraph import Model, derive
-from linegraph.emission import render
-from linegraph.joints import JOINTS
+from linegraph.components.joints import JOINTS
+from linegraph.emission.emit import render
 
 SYSTEMS, STATES, BATCH = 200, 10, 10
 SLICES = range(0, SYSTEMS, BATCH)

@@ -12,14 +12,14 @@ import pytest
 from modelfile_text import LOOP
 
 from linegraph import Model, ModelError, SourceError, derive
-from linegraph.emission import render
+from linegraph.emission.emit import render
 from linegraph.errors import LinegraphError
-from linegraph.modelfile import parse
+from linegraph.readers.modelfile import parse
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from linegraph.derive import Derivation
+    from linegraph.pipeline import Derivation
 
 SLIDERS = """\
 [body.cart]

@@ -22,8 +22,8 @@ from emitted import load
 import codegen
 from codegen import templates
 from linegraph.errors import LinegraphError
-from linegraph.expression import Dag
-from linegraph.program import Argument, Module, Quantity, Result, assemble
+from linegraph.ir.dag import Dag
+from linegraph.ir.program import Argument, Module, Quantity, Result, assemble
 
 if TYPE_CHECKING:
     from collections.abc import Callable

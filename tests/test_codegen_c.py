@@ -15,9 +15,9 @@ from compiled import COMPILERS, WARNINGS, Compiled, Failed, available
 
 import codegen
 from codegen import c
-from linegraph.expression import Dag
-from linegraph.program import Argument, Call, Check, Module, Quantity, Result, assemble
-from linegraph.statuses import NOT_FINITE_INPUT
+from linegraph.ir.dag import Dag
+from linegraph.ir.program import Argument, Call, Check, Module, Quantity, Result, assemble
+from linegraph.ir.statuses import NOT_FINITE_INPUT
 
 if TYPE_CHECKING:
     from pathlib import Path

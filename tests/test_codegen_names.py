@@ -15,8 +15,8 @@ from compiled import Compiled
 import codegen
 from codegen import naming, prose, reserved
 from linegraph.errors import LinegraphError, NameRefused
-from linegraph.expression import Dag
-from linegraph.program import Argument, Module, Quantity, Result, assemble
+from linegraph.ir.dag import Dag
+from linegraph.ir.program import Argument, Module, Quantity, Result, assemble
 
 if TYPE_CHECKING:
     from pathlib import Path

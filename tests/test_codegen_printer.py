@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from codegen.printer import Body, Notation, number, print_program
-from linegraph.expression import Dag, Node, Operand
-from linegraph.functions import ARITY
-from linegraph.program import Argument, Check, Program, Result, assemble
+from linegraph.ir.dag import Dag, Node, Operand
+from linegraph.ir.functions import ARITY
+from linegraph.ir.program import Argument, Check, Program, Result, assemble
 
 PLAIN = Notation(
     before="",

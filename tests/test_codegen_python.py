@@ -18,7 +18,7 @@ from emitted import load
 
 import codegen
 from codegen import python
-from linegraph.program import Quantity
+from linegraph.ir.program import Quantity
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -19,16 +19,16 @@ import pytest
 from emitted import load
 
 from linegraph import Model, derive
-from linegraph.components import COMPONENTS
-from linegraph.emission import render
+from linegraph.components.scalar import COMPONENTS
+from linegraph.emission.emit import render
 from linegraph.errors import LinegraphError, ModelError, SourceErrors
-from linegraph.modelfile import parse
-from linegraph.modelfile.schema import schema
+from linegraph.readers.modelfile import parse
+from linegraph.readers.modelfile.schema import schema
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from linegraph.derive import Derivation
+    from linegraph.pipeline import Derivation
 
 EXACT = 1e-11  # measured below 1e-12: rates are differences
 SEEDS = range(3)

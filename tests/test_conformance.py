@@ -16,7 +16,7 @@ from every_model import COORDINATES, QUESTIONS, derived, documented, every_model
 from linegraph import LinegraphError
 
 if TYPE_CHECKING:
-    from linegraph.derive import Derivation
+    from linegraph.pipeline import Derivation
 
 SMALL = (
     "double_pendulum",

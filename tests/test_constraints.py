@@ -12,9 +12,9 @@ import pytest
 from emitted import load
 
 import linegraph as lg
-from linegraph.emission import render
-from linegraph.statuses import SINGULAR_POSITION
-from linegraph.transfer import transfer
+from linegraph.emission.emit import render
+from linegraph.ir.statuses import SINGULAR_POSITION
+from linegraph.numeric.between_trees import transfer
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -490,7 +490,7 @@ def test_what_is_not_a_number_is_a_status() -> None:
 
 def test_parameters_that_cannot_be_assembled_are_a_status() -> None:
     """A four-bar whose fixed pivots are too far apart, at run time."""
-    from linegraph import modelfile
+    from linegraph.readers import modelfile
 
     examples = Path(__file__).parent.parent / "examples"
     found = emitted(modelfile.read(examples / "four_bar" / "four_bar.toml"))
@@ -580,7 +580,7 @@ def test_symbolic_constraints_of_a_four_bar() -> None:
     """φ, J and γ over sympy give the emitted numbers at a state."""
     import sympy
 
-    from linegraph import modelfile
+    from linegraph.readers import modelfile
 
     examples = Path(__file__).parent.parent / "examples"
     model = modelfile.read(examples / "four_bar" / "four_bar.toml")

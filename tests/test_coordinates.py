@@ -17,17 +17,18 @@ import numpy as np
 import pytest
 
 import linegraph as lg
-from linegraph import modelfile, orthogonality
-from linegraph.closure import equations
-from linegraph.inverse_scheme import InverseScheme
-from linegraph.loads import efforts
-from linegraph.observation import observed
-from linegraph.transfer import transfer
+from linegraph.dynamics import orthogonality
+from linegraph.dynamics.applied_forces import efforts
+from linegraph.dynamics.chords import equations
+from linegraph.dynamics.edge_variables import InverseScheme
+from linegraph.dynamics.outputs import observed
+from linegraph.numeric.between_trees import transfer
+from linegraph.readers import modelfile
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from linegraph.derive import Derivation
+    from linegraph.pipeline import Derivation
 
 ROOT = Path(__file__).parent.parent
 TIME = 0.3

@@ -16,9 +16,9 @@ import operations
 from pinocchio_models import robots_folder
 
 from linegraph import Model
-from linegraph.emission import module_for, render
-from linegraph.program import Program
-from linegraph.reading import read
+from linegraph.emission.emit import module_for, render
+from linegraph.ir.program import Program
+from linegraph.readers.read import read
 
 MOST = {
     # M and h together, M, h, inverse and forward dynamics when last measured, signs free; forward dynamics

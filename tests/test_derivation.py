@@ -18,20 +18,21 @@ import random_trees as trees
 import sympy
 from spec_models import model_of
 
-from linegraph import Derivation, Model, derive, orthogonality
-from linegraph import mass_matrix as columns_of_mass
-from linegraph.algebra import Floats
-from linegraph.articulated import forward_dynamics
-from linegraph.expression import Dag
-from linegraph.factorization import solve
-from linegraph.numeric import Numeric
-from linegraph.paper import paper_matrices
-from linegraph.programs import module_of
+from linegraph import Derivation, Model, derive
+from linegraph.algebra.factorization import solve
+from linegraph.algebra.protocol import Floats
+from linegraph.dynamics import mass_matrix as columns_of_mass
+from linegraph.dynamics import orthogonality
+from linegraph.dynamics.articulated import forward_dynamics
+from linegraph.ir.dag import Dag
+from linegraph.numeric.reference import Numeric
+from linegraph.paper.joint_form import paper_matrices
+from linegraph.programs.register import module_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from linegraph.kinematics import KinematicTree
+    from linegraph.kinematics.links import KinematicTree
 
 Array = Any
 

@@ -22,16 +22,16 @@ from test_random_mixed import case_of
 
 import linegraph as lg
 from linegraph import ModelError, derive
-from linegraph.algebra import Floats
-from linegraph.differentiation import Replay
-from linegraph.emission import render
-from linegraph.numeric import Numeric
-from linegraph.parameters import valued
-from linegraph.programs import PROGRAMS
-from linegraph.shared import Functions
+from linegraph.algebra.differentiation import Replay
+from linegraph.algebra.protocol import Floats
+from linegraph.components.parameters import valued
+from linegraph.emission.emit import render
+from linegraph.numeric.reference import Numeric
+from linegraph.programs.register import PROGRAMS
+from linegraph.programs.workspace import Functions
 
 if TYPE_CHECKING:
-    from linegraph.derive import Derivation
+    from linegraph.pipeline import Derivation
 
 Array = Any
 

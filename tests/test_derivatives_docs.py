@@ -10,8 +10,8 @@ from pathlib import Path
 from click.testing import CliRunner
 from test_cost import SLOPES_MOST
 
-from linegraph.cli import main
-from linegraph.programs import ON_REQUEST
+from linegraph.cli.main import main
+from linegraph.programs.register import ON_REQUEST
 
 ROOT = Path(__file__).parent.parent
 TEXT = (ROOT / "docs" / "derivatives.md").read_text()

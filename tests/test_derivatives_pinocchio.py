@@ -13,7 +13,7 @@ import pytest
 from emitted import load
 from test_pinocchio import readable
 
-from linegraph.emission import render
+from linegraph.emission.emit import render
 
 pytest.importorskip("pinocchio")
 import pinocchio

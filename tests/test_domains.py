@@ -6,7 +6,7 @@ from dataclasses import FrozenInstanceError
 
 import pytest
 
-from linegraph.domains import DOMAINS, POWER, ROTATION, TRANSLATION, Domain, Variable
+from linegraph.components.domains import DOMAINS, POWER, ROTATION, TRANSLATION, Domain, Variable
 
 # how many kg, m, s, A, K multiply to each unit; from the definitions of the SI, not from the library
 SI = {

@@ -30,8 +30,8 @@ from linegraph.drawing.pictures import (
 from linegraph.drawing.png import png_bytes
 from linegraph.drawing.scene import Stroke, Text, flat
 from linegraph.drawing.svg import svg_text
-from linegraph.graph import Edge, unite
-from linegraph.topology import choose_forest
+from linegraph.graph.forest import choose_forest
+from linegraph.graph.multigraph import Edge, unite
 
 ROOT = Path(__file__).parent.parent
 SVG = "{http://www.w3.org/2000/svg}"
@@ -101,7 +101,7 @@ def test_hostile_names_are_clear() -> None:
 
 @pytest.mark.parametrize("coordinates", ["absolute", "absolute-angle"])
 def test_other_trees_are_clear(coordinates: str) -> None:
-    from linegraph.derive import variant
+    from linegraph.pipeline import variant
 
     scene = graph_scene(derive(variant(example("double_pendulum").model, coordinates=coordinates)))
     assert overlaps(scene) == []

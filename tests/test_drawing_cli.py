@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 from lxml import etree
 
-from linegraph.cli import main
+from linegraph.cli.main import main
 
 ROOT = Path(__file__).parent.parent
 FOUR_BAR = str(ROOT / "examples" / "four_bar" / "four_bar.toml")

@@ -119,7 +119,7 @@ def test_what_cannot_be_sketched_is_told() -> None:
 
 def test_every_kind_of_joint_has_a_sign() -> None:
     """Also where everything stands at one point, and nothing has a size."""
-    from linegraph.joints import JOINTS
+    from linegraph.components.joints import JOINTS
 
     model = Model("all", gravity=(0, 0, 0))
     before = model.ground

@@ -18,10 +18,11 @@ from compiled import Compiled
 
 import codegen
 from codegen import Options, real
-from linegraph import Model, modelfile
-from linegraph.cli import main
-from linegraph.emission import emit, module_for, render
+from linegraph import Model
+from linegraph.cli.main import main
+from linegraph.emission.emit import emit, module_for, render
 from linegraph.errors import ModelError, NameRefused
+from linegraph.readers import modelfile
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -12,8 +12,8 @@ import random_trees as trees
 from compiled import COMPILERS, WARNINGS, Compiled, available, has_no_warnings
 from spec_models import model_of
 
-from linegraph import urdf
-from linegraph.emission import render
+from linegraph.emission.emit import render
+from linegraph.readers import urdf
 
 if TYPE_CHECKING:
     from linegraph import Model

@@ -20,14 +20,15 @@ import pytest
 from compiled import Compiled
 from emitted import load
 
-import linegraph as lg
-from linegraph import modelfile
-from linegraph.emission import render
+from linegraph.emission.emit import render
+from linegraph.readers import modelfile
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from compiled import Array
+
+    import linegraph as lg
 
     Find = Callable[[str], "System"]
 

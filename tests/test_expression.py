@@ -11,9 +11,9 @@ import pytest
 from dag_values import reached, value, values
 
 from linegraph import ModelError
-from linegraph.expression import Dag, Node
-from linegraph.functions import ARITY, of_numbers
-from linegraph.program import INLINE_LIMIT, Argument, Check, Program, Result, assemble
+from linegraph.ir.dag import Dag, Node
+from linegraph.ir.functions import ARITY, of_numbers
+from linegraph.ir.program import INLINE_LIMIT, Argument, Check, Program, Result, assemble
 
 if TYPE_CHECKING:
     from collections.abc import Callable

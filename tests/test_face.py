@@ -13,8 +13,8 @@ import sympy
 from sympy import cos, sin
 
 import linegraph as lg
-from linegraph.emission import module_for
-from linegraph.simplification.plain import quotient
+from linegraph.emission.emit import module_for
+from linegraph.symbolic.simplification.plain import quotient
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 

@@ -17,14 +17,16 @@ from emitted import load
 
 import codegen
 from codegen import Options, parts
-from linegraph import Model, modelfile, urdf
-from linegraph.cli import main
-from linegraph.emission import module_for
-from linegraph.expression import Dag
-from linegraph.program import Module, Program, Result, assemble
+from linegraph.cli.main import main
+from linegraph.emission.emit import module_for
+from linegraph.ir.dag import Dag
+from linegraph.ir.program import Module, Program, Result, assemble
+from linegraph.readers import modelfile, urdf
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from linegraph import Model
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 WAYS = {

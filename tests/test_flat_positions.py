@@ -22,8 +22,8 @@ from emitted import load
 from scipy.integrate import DOP853, RK45, solve_ivp
 
 from linegraph import Model
-from linegraph.emission import render
-from linegraph.statuses import SINGULAR_POSITION
+from linegraph.emission.emit import render
+from linegraph.ir.statuses import SINGULAR_POSITION
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -10,9 +10,9 @@ from fractions import Fraction
 
 import pytest
 
-from linegraph.algebra import Floats
+from linegraph.algebra.formula import VARIABLES, VECTORS, Formula, parse, variable_of
+from linegraph.algebra.protocol import Floats
 from linegraph.errors import ModelError
-from linegraph.formula import VARIABLES, VECTORS, Formula, parse, variable_of
 
 VALUES = {"m": 2.0, "l": 0.5, "x": 3.0, "der(x)": -1.5, "beta": 0.25, "S": 7.0, "E": 11.0}
 

@@ -17,8 +17,9 @@ from test_kinematics import operational
 from test_pinocchio import readable
 
 from codegen import naming
-from linegraph import ModelError, derive, urdf
-from linegraph.emission import render
+from linegraph import ModelError, derive
+from linegraph.emission.emit import render
+from linegraph.readers import urdf
 
 pytest.importorskip("pinocchio")
 import pinocchio

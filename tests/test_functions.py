@@ -13,15 +13,15 @@ from compiled import Compiled
 from emitted import load
 
 import codegen
-from linegraph.algebra import Floats
+from linegraph.algebra.formula import parse
+from linegraph.algebra.jets import Jet, Jets
+from linegraph.algebra.protocol import Floats
+from linegraph.algebra.sympy_scalars import Sympy, evaluate
 from linegraph.errors import ModelError
-from linegraph.expression import Dag
-from linegraph.formula import parse
-from linegraph.functions import ARITY, of_numbers
-from linegraph.interpretation import run
-from linegraph.jets import Jet, Jets
-from linegraph.program import Argument, Module, Result, assemble
-from linegraph.sympy_walk import Sympy, evaluate
+from linegraph.ir.dag import Dag
+from linegraph.ir.functions import ARITY, of_numbers
+from linegraph.ir.interpreter import run
+from linegraph.ir.program import Argument, Module, Result, assemble
 
 if TYPE_CHECKING:
     from pathlib import Path

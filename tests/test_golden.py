@@ -22,15 +22,16 @@ from random_trees import random_state, random_tree
 from spec_models import model_of
 
 import linegraph as lg
-from linegraph import golden, modelfile, urdf
-from linegraph.cli import main
-from linegraph.emission import module_for, render
+from linegraph.cli.main import main
+from linegraph.emission.emit import module_for, render
 from linegraph.errors import ModelError
-from linegraph.golden.bodies import Bodies
-from linegraph.golden.walk import Walk
+from linegraph.readers import modelfile, urdf
+from linegraph.verification import golden
+from linegraph.verification.golden.bodies import Bodies
+from linegraph.verification.golden.walk import Walk
 
 if TYPE_CHECKING:
-    from linegraph.vectors import Vectors
+    from linegraph.ir.golden_vectors import Vectors
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 FILES = {path.parent.name: path for path in sorted(EXAMPLES.glob("*/*.toml"))}

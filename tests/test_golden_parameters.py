@@ -11,7 +11,7 @@ from emitted import load
 from test_golden import build, read, run
 
 import linegraph as lg
-from linegraph.emission import render
+from linegraph.emission.emit import render
 
 if TYPE_CHECKING:
     from pathlib import Path

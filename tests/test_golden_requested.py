@@ -13,14 +13,14 @@ from emitted import load
 from test_golden import build, close, corrupted, emitted, read, run
 
 import linegraph as lg
-from linegraph.algebra import Floats
-from linegraph.emission import render
+from linegraph.algebra.jets import derivatives
+from linegraph.algebra.protocol import Floats
+from linegraph.emission.emit import render
 from linegraph.errors import ModelError
-from linegraph.functions import ARITY
-from linegraph.golden.references import REFERENCES
-from linegraph.golden.steps import STEP, Complexes
-from linegraph.jets import derivatives
-from linegraph.kinematic_programs import WHOLE
+from linegraph.ir.functions import ARITY
+from linegraph.programs.kinematics import WHOLE
+from linegraph.verification.golden.references import REFERENCES
+from linegraph.verification.golden.steps import STEP, Complexes
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -11,10 +11,11 @@ import pytest
 from test_golden import build, found, read, run
 
 import linegraph as lg
-from linegraph import golden, modelfile
-from linegraph.emission import module_for, render
-from linegraph.golden.draws import Drawing
-from linegraph.golden.point import Kept
+from linegraph.emission.emit import module_for, render
+from linegraph.readers import modelfile
+from linegraph.verification import golden
+from linegraph.verification.golden.draws import Drawing
+from linegraph.verification.golden.point import Kept
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,10 +10,10 @@ import pytest
 import sympy
 
 from linegraph.errors import ModelError
-from linegraph.graph import Edge, IntegerMatrix, Projection, unite
+from linegraph.graph.multigraph import Edge, IntegerMatrix, Projection, unite
 
 if TYPE_CHECKING:
-    from linegraph.graph import SystemGraph
+    from linegraph.graph.multigraph import SystemGraph
 
 
 def edge(name: str, tail: str, head: str, domain: str = "electrical") -> Edge:

@@ -12,9 +12,10 @@ from test_codegen_names import with_parameters
 from test_golden import build, corrupted, read, run
 
 from codegen import naming
-from linegraph import Model, modelfile
-from linegraph.emission import render
+from linegraph import Model
+from linegraph.emission.emit import render
 from linegraph.errors import NameRefused
+from linegraph.readers import modelfile
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -21,14 +21,14 @@ from emitted import load
 from spec_models import model_of, numbers, rows
 
 import linegraph as lg
-from linegraph.algebra import Floats
-from linegraph.emission import module_for, render
-from linegraph.joints import JOINTS, Compound, Helical, Spherical, Universal
-from linegraph.joints.spherical import SEQUENCES
-from linegraph.numeric import Numeric
-from linegraph.paper import paper_matrices
-from linegraph.rotation import Turn
-from linegraph.words import BodyHandle
+from linegraph.algebra.protocol import Floats
+from linegraph.components.joints import JOINTS, Compound, Helical, Spherical, Universal
+from linegraph.components.joints.spherical import SEQUENCES
+from linegraph.emission.emit import module_for, render
+from linegraph.model.builder_words import BodyHandle
+from linegraph.numeric.reference import Numeric
+from linegraph.paper.joint_form import paper_matrices
+from linegraph.spatial.rotation import Turn
 
 if TYPE_CHECKING:
     from collections.abc import Callable

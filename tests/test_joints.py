@@ -16,17 +16,17 @@ import random_trees as trees
 from numpy.typing import NDArray
 
 from linegraph import Model, ModelError, derive
-from linegraph.algebra import Floats
-from linegraph.joints import JOINTS, Joint
-from linegraph.mass_matrix import mass_matrix
-from linegraph.orthogonality import arms, inverse_dynamics, reverse
+from linegraph.algebra.protocol import Floats
+from linegraph.components.joints import JOINTS, Joint
+from linegraph.dynamics.mass_matrix import mass_matrix
+from linegraph.dynamics.orthogonality import arms, inverse_dynamics, reverse
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from linegraph.joints import Motion
-    from linegraph.kinematics import KinematicTree
-    from linegraph.model import BodyHandle
+    from linegraph.components.joints import Motion
+    from linegraph.kinematics.links import KinematicTree
+    from linegraph.model.builder import BodyHandle
 
 Array = NDArray[np.complex128]
 

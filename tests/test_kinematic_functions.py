@@ -16,13 +16,14 @@ from click.testing import CliRunner
 from compiled import Compiled, Failed
 from emitted import load
 
-from linegraph import Model, ModelError, NameRefused, derive, modelfile, urdf
-from linegraph.cli import main
-from linegraph.cli_options import FURTHER as REQUESTS
-from linegraph.emission import emit, module_for, render
-from linegraph.kinematic_programs import WHOLE
-from linegraph.program import Program
-from linegraph.programs import ON_REQUEST
+from linegraph import Model, ModelError, NameRefused, derive
+from linegraph.cli.main import main
+from linegraph.cli.options import FURTHER as REQUESTS
+from linegraph.emission.emit import emit, module_for, render
+from linegraph.ir.program import Program
+from linegraph.programs.kinematics import WHOLE
+from linegraph.programs.register import ON_REQUEST
+from linegraph.readers import modelfile, urdf
 
 PANDA = Path("examples/panda/panda.urdf")
 STEWART = Path("examples/stewart_platform/stewart_platform.toml")

@@ -23,11 +23,12 @@ from emitted import load
 from spec_models import model_of as tree_model
 from test_closed_loops import model_of as closed_model
 
-from linegraph import ModelError, derive, modelfile
-from linegraph.emission import render
-from linegraph.kinematic_programs import OF_FRAMES, RESULTS, both
-from linegraph.shared import Functions
-from linegraph.tips import NamedFrame
+from linegraph import ModelError, derive
+from linegraph.emission.emit import render
+from linegraph.kinematics.frame_trees import NamedFrame
+from linegraph.programs.kinematics import OF_FRAMES, RESULTS, both
+from linegraph.programs.workspace import Functions
+from linegraph.readers import modelfile
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

@@ -11,12 +11,12 @@ import pytest
 from compiled import Compiled, Failed
 from emitted import load
 
-from linegraph import modelfile
-from linegraph.algebra import Floats
-from linegraph.emission import render
-from linegraph.formula import parse
-from linegraph.jets import Jet, Jets
-from linegraph.statuses import NOT_FINITE
+from linegraph.algebra.formula import parse
+from linegraph.algebra.jets import Jet, Jets
+from linegraph.algebra.protocol import Floats
+from linegraph.emission.emit import render
+from linegraph.ir.statuses import NOT_FINITE
+from linegraph.readers import modelfile
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -22,16 +22,16 @@ from test_derivatives import Point, error
 
 import linegraph as lg
 from linegraph import Model, ModelError
-from linegraph.closed_derivatives import free_changes
-from linegraph.closed_programs import independent
-from linegraph.emission import render
-from linegraph.shared import Functions
+from linegraph.emission.emit import render
+from linegraph.programs.loop_derivatives import free_changes
+from linegraph.programs.loops import independent
+from linegraph.programs.workspace import Functions
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from linegraph.derive import Derivation
-    from linegraph.state_space import StateSpace
+    from linegraph.pipeline import Derivation
+    from linegraph.symbolic.state_space import StateSpace
 
 Array = Any
 

@@ -17,9 +17,10 @@ from modelfile_text import LOOP
 from test_cli import linegraph, refused
 from urdf_text import axis, inertial, joint, link, origin, robot
 
-from linegraph import LinegraphError, Model, ModelError, derive, modelfile, urdf
-from linegraph.emission import module_for, render
-from linegraph.programs import OF_FRAMES, PROGRAMS
+from linegraph import LinegraphError, Model, ModelError, derive
+from linegraph.emission.emit import module_for, render
+from linegraph.programs.register import OF_FRAMES, PROGRAMS
+from linegraph.readers import modelfile, urdf
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -19,8 +19,8 @@ import pytest
 from compiled import Compiled
 from emitted import load
 
-from linegraph import modelfile
-from linegraph.emission import render
+from linegraph.emission.emit import render
+from linegraph.readers import modelfile
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -14,17 +14,17 @@ import pytest
 from modelfile_text import LOOP, SMALL, ZOO
 
 import linegraph as lg
-from linegraph.constraints import CONSTRAINTS
-from linegraph.derive import derive
-from linegraph.elements import ELEMENTS
-from linegraph.emission import render
+from linegraph.components.constraints import CONSTRAINTS
+from linegraph.components.forces import ELEMENTS
+from linegraph.components.joints import JOINTS
+from linegraph.emission.emit import render
 from linegraph.errors import LinegraphError, SourceErrors
-from linegraph.joints import JOINTS
-from linegraph.modelfile import parse, read, schema, starter
-from linegraph.modelfile.document import parse_document
-from linegraph.modelfile.schema import PATH, text
-from linegraph.modelfile.starter import write
-from linegraph.modelfile.tables import TYPES, joint_table
+from linegraph.pipeline import derive
+from linegraph.readers.modelfile import parse, read, schema, starter
+from linegraph.readers.modelfile.document import parse_document
+from linegraph.readers.modelfile.schema import PATH, text
+from linegraph.readers.modelfile.starter import write
+from linegraph.readers.modelfile.tables import TYPES, joint_table
 
 DOCUMENTATION = Path(__file__).parent.parent / "docs" / "model_file.md"
 EXAMPLES = re.findall(r"^```toml\n(.*?)^```", DOCUMENTATION.read_text("utf-8"), re.M | re.S)

@@ -10,8 +10,8 @@ import pytest
 from modelfile_text import SMALL
 
 from linegraph.errors import SourceError, SourceErrors
-from linegraph.modelfile import parse, read
-from linegraph.modelfile.kinds import LONGEST_LABEL
+from linegraph.readers.modelfile import parse, read
+from linegraph.readers.modelfile.kinds import LONGEST_LABEL
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -755,7 +755,7 @@ def test_what_follows_from_an_error_is_not_reported() -> None:
 
 def test_errors_of_the_derivation_have_a_line() -> None:
     """A loop is none of them, a loose body is."""
-    from linegraph.derive import derive
+    from linegraph.pipeline import derive
 
     text = (
         SMALL + '[revolute.second]\nbetween = ["ground", "arm"]\naxis = [0, 1, 0]\n[body.loose]\n'

@@ -12,7 +12,7 @@ import pytest
 from modelfile_text import SMALL
 from test_cli import linegraph, refused
 
-from linegraph.modelfile.schema import text
+from linegraph.readers.modelfile.schema import text
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 import pytest
 from modelfile_text import SMALL, ZOO
 
-from linegraph.emission import render
+from linegraph.emission.emit import render
 from linegraph.errors import LinegraphError
-from linegraph.model import Model
-from linegraph.modelfile import parse
+from linegraph.model.builder import Model
+from linegraph.readers.modelfile import parse
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -15,9 +15,9 @@ from emitted import load
 from monotone_networks import Drawn, draw
 
 from linegraph import Model, ModelError, derive
-from linegraph.emission import render
-from linegraph.modelfile import parse
-from linegraph.statuses import NO_LOOP_SOLUTION
+from linegraph.emission.emit import render
+from linegraph.ir.statuses import NO_LOOP_SOLUTION
+from linegraph.readers.modelfile import parse
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -14,7 +14,7 @@ import mutant_judge
 import mutants
 import targets
 
-from linegraph.golden.states import NO_ROUTE
+from linegraph.verification.golden.states import NO_ROUTE
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -17,12 +17,13 @@ import pytest
 import sympy
 
 import linegraph as lg
-from linegraph import modelfile, orthogonality, urdf
-from linegraph.checks import RESERVED
-from linegraph.loads import efforts
+from linegraph.components.validation import RESERVED
+from linegraph.dynamics import orthogonality
+from linegraph.dynamics.applied_forces import efforts
+from linegraph.readers import modelfile, urdf
 
 if TYPE_CHECKING:
-    from linegraph.derive import Derivation
+    from linegraph.pipeline import Derivation
 
 STEMS = ("theta", "x", "b", "lambda", "I")
 PATTERNS = (

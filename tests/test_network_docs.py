@@ -16,18 +16,19 @@ import pytest
 from emitted import load
 from scipy.linalg import expm
 
-import linegraph as lg
-from linegraph import checking, modelfile
-from linegraph.components import COMPONENTS
-from linegraph.components.base import PLACES, Transducer
-from linegraph.derive import derive
-from linegraph.domains import DOMAINS, SPATIAL, UNITS
-from linegraph.emission import emit, render
+from linegraph.components.domains import DOMAINS, SPATIAL, UNITS
+from linegraph.components.scalar import COMPONENTS
+from linegraph.components.scalar.base import PLACES, Transducer
+from linegraph.emission.emit import emit, render
 from linegraph.errors import LinegraphError
+from linegraph.pipeline import derive
+from linegraph.readers import modelfile
 from linegraph.report import show
+from linegraph.verification import checking
 
 if TYPE_CHECKING:
-    from linegraph.derive import Derivation
+    import linegraph as lg
+    from linegraph.pipeline import Derivation
 
 ROOT = Path(__file__).parent.parent
 PAGE = (ROOT / "docs" / "networks.md").read_text("utf-8")

@@ -25,8 +25,8 @@ from scipy.integrate import odeint, solve_ivp
 from scipy.optimize import brentq, minimize_scalar
 
 import linegraph as lg
-from linegraph import modelfile
-from linegraph.emission import render
+from linegraph.emission.emit import render
+from linegraph.readers import modelfile
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -18,10 +18,10 @@ from emitted import load
 from test_modelfile_hostile import PAYLOADS
 
 from linegraph import derive
-from linegraph.components import COMPONENTS
-from linegraph.emission import render
+from linegraph.components.scalar import COMPONENTS
+from linegraph.emission.emit import render
 from linegraph.errors import LinegraphError
-from linegraph.modelfile import parse
+from linegraph.readers.modelfile import parse
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -17,15 +17,15 @@ from compiled import Compiled, Failed
 from emitted import load
 
 from linegraph import Model, ModelError, derive
-from linegraph.cli import main
-from linegraph.emission import render
+from linegraph.cli.main import main
+from linegraph.emission.emit import render
 from linegraph.errors import LinegraphError, SourceError, SourceErrors
-from linegraph.modelfile import parse
+from linegraph.readers.modelfile import parse
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from linegraph.derive import Derivation
+    from linegraph.pipeline import Derivation
 
 
 def part(kind: str, name: str, between: str, *keys: str) -> str:

@@ -11,12 +11,13 @@ from click.testing import CliRunner
 from compiled import Compiled
 from emitted import load
 
-from linegraph import ModelError, derive, modelfile
-from linegraph.cli import main
-from linegraph.cli_options import FUNCTIONS
-from linegraph.emission import module_for, render
-from linegraph.programs import PROGRAMS
-from linegraph.shared import Functions
+from linegraph import ModelError, derive
+from linegraph.cli.main import main
+from linegraph.cli.options import FUNCTIONS
+from linegraph.emission.emit import module_for, render
+from linegraph.programs.register import PROGRAMS
+from linegraph.programs.workspace import Functions
+from linegraph.readers import modelfile
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -13,10 +13,10 @@ import targets
 
 import codegen
 from codegen import Options
-from linegraph.emission import module_for
+from linegraph.emission.emit import module_for
 from linegraph.errors import ModelError, NameRefused
 from linegraph.files import write_all
-from linegraph.program import Quantity
+from linegraph.ir.program import Quantity
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,7 +8,7 @@ import numpy as np
 from emitted import load
 
 import linegraph as lg
-from linegraph.emission import render
+from linegraph.emission.emit import render
 
 if TYPE_CHECKING:
     from pathlib import Path

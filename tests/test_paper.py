@@ -14,20 +14,20 @@ import pytest
 import sympy
 
 import linegraph as lg
-from linegraph import orthogonality
-from linegraph.algebra import Floats
+from linegraph.algebra.protocol import Floats
+from linegraph.dynamics import orthogonality
+from linegraph.dynamics.applied_forces import applied
+from linegraph.dynamics.edge_variables import InverseScheme
+from linegraph.dynamics.orthogonality import arms
 from linegraph.errors import ModelError
-from linegraph.inverse_scheme import InverseScheme
-from linegraph.loads import applied
-from linegraph.orthogonality import arms
-from linegraph.paper import paper_matrices
-from linegraph.paper_inverse import star_variables
-from linegraph.paper_print import PrintedMatrices, equations, printed_matrices
+from linegraph.paper.joint_form import paper_matrices
+from linegraph.paper.star_form import PrintedMatrices, equations, printed_matrices
+from linegraph.paper.star_inverse import star_variables
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from linegraph.numeric import Numeric
+    from linegraph.numeric.reference import Numeric
 
 TOLERANCE = 1e-12
 TURNING = ("revolute", "universal", "spherical xyz", "spherical zxz")

@@ -19,9 +19,10 @@ import pytest
 from compiled import Compiled
 from emitted import load
 
-from linegraph import ModelError, derive, urdf
-from linegraph.emission import render
-from linegraph.model import SNAP
+from linegraph import ModelError, derive
+from linegraph.emission.emit import render
+from linegraph.model.builder import SNAP
+from linegraph.readers import urdf
 
 pytest.importorskip("pinocchio")
 import pinocchio_models as peers

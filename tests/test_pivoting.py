@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from linegraph.pivoting import apart_columns, free_motions
+from linegraph.algebra.pivoting import apart_columns, free_motions
 
 SEEDS = range(200)
 

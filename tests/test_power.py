@@ -12,11 +12,11 @@ import random_trees as trees
 from spec_models import model_of
 
 from linegraph import Model, derive
-from linegraph.algebra import Floats
-from linegraph.checking import check
-from linegraph.jets import Jet, Jets
-from linegraph.mass_matrix import mass_matrix
-from linegraph.orthogonality import arms, coordinate_rates, inverse_dynamics
+from linegraph.algebra.jets import Jet, Jets
+from linegraph.algebra.protocol import Floats
+from linegraph.dynamics.mass_matrix import mass_matrix
+from linegraph.dynamics.orthogonality import arms, coordinate_rates, inverse_dynamics
+from linegraph.verification.checking import check
 
 
 @pytest.mark.seeds(range(0, 80, 6), range(0, 80, 2))

@@ -19,17 +19,17 @@ from test_joints import VARIANTS
 from test_symbolic_parameters import symbolic_model_of
 
 import linegraph as lg
-from linegraph import modelfile, urdf
-from linegraph.emission import module_for, render
-from linegraph.expression import SYMBOL, Node
-from linegraph.joints import JOINTS
-from linegraph.program import Program
-from linegraph.prologue import PREPARED, SHORT
+from linegraph.components.joints import JOINTS
+from linegraph.emission.emit import module_for, render
+from linegraph.ir.dag import SYMBOL, Node
+from linegraph.ir.program import Program
+from linegraph.ir.prologue import PREPARED, SHORT
+from linegraph.readers import modelfile, urdf
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from linegraph.program import Module
+    from linegraph.ir.program import Module
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 EXACT = 1e-12  # relative to 1 + the largest expected entry; measured 8e-15

@@ -10,9 +10,9 @@ import sympy
 from published_networks import PUBLISHED, Published
 
 import linegraph as lg
-from linegraph import modelfile
-from linegraph.formula import parse
-from linegraph.sympy_walk import Sympy
+from linegraph.algebra.formula import parse
+from linegraph.algebra.sympy_scalars import Sympy
+from linegraph.readers import modelfile
 
 LINEAR = [system for system in PUBLISHED if not system.rates]
 

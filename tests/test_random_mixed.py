@@ -22,10 +22,10 @@ from mixed_reference import STEP, Reference, rate, reference_of
 from mixed_tableau import Instant, Tableau
 
 from linegraph import ModelError, derive
-from linegraph.derive import variant
-from linegraph.edges import network_powers, powers
-from linegraph.emission import render
-from linegraph.transfer import transfer
+from linegraph.dynamics.edge_quantities import network_powers, powers
+from linegraph.emission.emit import render
+from linegraph.numeric.between_trees import transfer
+from linegraph.pipeline import variant
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping

@@ -15,9 +15,9 @@ import random_systems as systems
 from compiled import Compiled
 from emitted import load
 
-from linegraph.elements import ELEMENTS
-from linegraph.emission import render
-from linegraph.joints import JOINTS
+from linegraph.components.forces import ELEMENTS
+from linegraph.components.joints import JOINTS
+from linegraph.emission.emit import render
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -15,7 +15,7 @@ from compiled import Compiled
 from emitted import load
 from spec_models import model_of
 
-from linegraph.emission import render
+from linegraph.emission.emit import render
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -13,9 +13,10 @@ from emitted import load
 from redundant_mechanisms import Pair, random_pair
 from spec_models import numbers
 
-from linegraph import Model, derive, modelfile
-from linegraph.emission import render
+from linegraph import Model, derive
+from linegraph.emission.emit import render
 from linegraph.errors import ModelError
+from linegraph.readers import modelfile
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -18,18 +18,18 @@ import random_trees as trees
 import sympy
 
 from linegraph import LinegraphError, Model, ModelError, Parameter, SourceError, derive
-from linegraph.joints import Moments, Revolute
-from linegraph.joints.base import second_moments
-from linegraph.kinematics import Link
-from linegraph.layout import Place
-from linegraph.regularity import is_solid
-from linegraph.rotation import Rotation
-from linegraph.vector import ZERO
+from linegraph.components.joints import Moments, Revolute
+from linegraph.components.joints.base import second_moments
+from linegraph.dynamics.regularity import is_solid
+from linegraph.kinematics.links import Link
+from linegraph.kinematics.state_layout import Place
+from linegraph.spatial.rotation import Rotation
+from linegraph.spatial.vector import ZERO
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from linegraph.model import BodyHandle
+    from linegraph.model.builder import BodyHandle
 
 NAN, INF = math.nan, math.inf
 WRONG_NUMBERS = pytest.mark.parametrize("wrong", [NAN, INF, -INF], ids=str)

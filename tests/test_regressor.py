@@ -15,15 +15,16 @@ from click.testing import CliRunner
 from compiled import Compiled
 from emitted import load
 
-from linegraph import Model, ModelError, derive, modelfile, urdf
-from linegraph.cli import main
-from linegraph.derive import variant
-from linegraph.emission import module_for, render
-from linegraph.orthogonality import arms
-from linegraph.regressor import Columns, Station, by_motions, by_wrenches
-from linegraph.shared import Functions
-from linegraph.standard_parameters import MOMENTS, homes
-from linegraph.tied_columns import tied, ties
+from linegraph import Model, ModelError, derive
+from linegraph.cli.main import main
+from linegraph.dynamics.orthogonality import arms
+from linegraph.emission.emit import module_for, render
+from linegraph.identification.regressor import Columns, Station, by_motions, by_wrenches
+from linegraph.identification.standard_parameters import MOMENTS, homes
+from linegraph.identification.tied_columns import tied, ties
+from linegraph.pipeline import variant
+from linegraph.programs.workspace import Functions
+from linegraph.readers import modelfile, urdf
 
 if TYPE_CHECKING:
     from pathlib import Path

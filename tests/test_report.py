@@ -19,13 +19,13 @@ from lxml import etree
 from plain_formulas import Reader, entries
 
 import linegraph as lg
-from linegraph import modelfile, urdf
-from linegraph.cli import main
+from linegraph.cli.main import main
 from linegraph.errors import LinegraphError
-from linegraph.expression import Dag
+from linegraph.ir.dag import Dag
+from linegraph.ir.program import leaves
 from linegraph.notation.plain import Plain
 from linegraph.notation.tree import Grid, Name, Sum
-from linegraph.program import leaves
+from linegraph.readers import modelfile, urdf
 from linegraph.report import FORMATS, format_of, html, latex, markdown, report, text
 from linegraph.report.contents import document
 from linegraph.report.document import Document, Formulas, Listing, Matrix, Row, Section, formulas
@@ -358,8 +358,8 @@ def printed_reactions_are_those_of_the_derivation(name: str) -> None:
 
 
 def scheme_of(d: lg.Derivation, q: list[float], v: list[float], a: list[float]) -> Any:
-    from linegraph.inverse_scheme import InverseScheme
-    from linegraph.orthogonality import arms
+    from linegraph.dynamics.edge_variables import InverseScheme
+    from linegraph.dynamics.orthogonality import arms
 
     numeric = d.numeric()
     crossed = arms(numeric.tree, numeric.algebra, q, v)

@@ -8,7 +8,7 @@ import pytest
 import sympy
 
 import linegraph as lg
-from linegraph.modelfile import parse
+from linegraph.readers.modelfile import parse
 from linegraph.report import FORMATS, report
 
 EXAMPLES = Path(__file__).parent.parent / "examples"

@@ -12,8 +12,8 @@ from click.testing import CliRunner
 
 import linegraph as lg
 from linegraph import ModelError
-from linegraph.cli import main
-from linegraph.emission import render
+from linegraph.cli.main import main
+from linegraph.emission.emit import render
 from linegraph.errors import LinegraphError
 from linegraph.files import write_all
 

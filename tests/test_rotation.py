@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import random_trees as trees
 
-from linegraph.rotation import (
+from linegraph.spatial.rotation import (
     IDENTITY_MATRIX,
     Full,
     Relabel,

@@ -23,10 +23,10 @@ from form_measures import (
 )
 from sympy import cos, sin
 
+from linegraph.algebra.sympy_scalars import evaluate
 from linegraph.errors import ModelError
-from linegraph.expression import Dag
-from linegraph.simplification import Simplifier
-from linegraph.sympy_walk import evaluate
+from linegraph.ir.dag import Dag
+from linegraph.symbolic.simplification import Simplifier
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -13,8 +13,8 @@ from mpmath import libmp
 
 import codegen
 from codegen import Options
-from linegraph.expression import Dag
-from linegraph.program import Argument, Module, Result, assemble
+from linegraph.ir.dag import Dag
+from linegraph.ir.program import Argument, Module, Result, assemble
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -11,10 +11,10 @@ from compiled import Compiled
 from emitted import load
 
 import linegraph as lg
-from linegraph.emission import render
-from linegraph.expression import Dag
-from linegraph.joints.base import second_moments
-from linegraph.rotation import from_rpy, snapped
+from linegraph.components.joints.base import second_moments
+from linegraph.emission.emit import render
+from linegraph.ir.dag import Dag
+from linegraph.spatial.rotation import from_rpy, snapped
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -17,7 +17,7 @@ from targets import CORTEX_M4
 import codegen
 from codegen import frames, stack
 from linegraph import Model
-from linegraph.emission import module_for
+from linegraph.emission.emit import module_for
 
 if TYPE_CHECKING:
     from pathlib import Path

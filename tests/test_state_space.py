@@ -12,10 +12,11 @@ import sympy
 from published_networks import PUBLISHED, Published
 
 import linegraph as lg
-from linegraph import Model, ModelError, modelfile
+from linegraph import Model, ModelError
+from linegraph.readers import modelfile
 
 if TYPE_CHECKING:
-    from linegraph.state_space import StateSpace
+    from linegraph.symbolic.state_space import StateSpace
 
 ROOT = Path(__file__).parent.parent
 POINTS = (0.3 + 1.7j, 2.0j, -0.4 + 0.9j)

@@ -13,9 +13,9 @@ import pytest
 from compiled import Compiled, Failed
 from emitted import load
 
-from linegraph import modelfile, urdf
-from linegraph.emission import render
-from linegraph.statuses import COMMON, NOT_FINITE, NOT_FINITE_INPUT, counted, singular_at
+from linegraph.emission.emit import render
+from linegraph.ir.statuses import COMMON, NOT_FINITE, NOT_FINITE_INPUT, counted, singular_at
+from linegraph.readers import modelfile, urdf
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

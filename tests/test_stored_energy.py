@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from linegraph import Model, ModelError, derive
-from linegraph.algebra import Floats
-from linegraph.antiderivative import antiderivative
-from linegraph.differentiation import Calculus, Replay
-from linegraph.emission import render
-from linegraph.expression import Dag
-from linegraph.modelfile import parse
-from linegraph.parameters import resolver
+from linegraph.algebra.antiderivative import antiderivative
+from linegraph.algebra.differentiation import Calculus, Replay
+from linegraph.algebra.protocol import Floats
+from linegraph.components.parameters import resolver
+from linegraph.emission.emit import render
+from linegraph.ir.dag import Dag
+from linegraph.readers.modelfile import parse
 
 INTEGRATED = (
     "100*x + 7*x**3",

@@ -17,10 +17,10 @@ import targets
 
 import codegen
 from linegraph import Model
-from linegraph.emission import module_for, render
-from linegraph.expression import Dag, Node
-from linegraph.program import Argument, Check, Program, Result, assemble
-from linegraph.sums import collected
+from linegraph.emission.emit import module_for, render
+from linegraph.ir.dag import Dag, Node
+from linegraph.ir.program import Argument, Check, Program, Result, assemble
+from linegraph.ir.sums import collected
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -13,8 +13,8 @@ from emitted import load
 from spec_models import model_of, numbers, rows
 
 import linegraph as lg
-from linegraph.emission import render
-from linegraph.joints import JOINTS
+from linegraph.components.joints import JOINTS
+from linegraph.emission.emit import render
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

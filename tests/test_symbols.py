@@ -10,10 +10,10 @@ import sympy
 from dag_values import value
 
 from linegraph import Model, ModelError, Parameter, derive
-from linegraph.algebra import Floats
-from linegraph.expression import Dag, Node
-from linegraph.simplification.plain import simplify
-from linegraph.sympy_walk import Sympy, evaluate, to_sympy
+from linegraph.algebra.protocol import Floats
+from linegraph.algebra.sympy_scalars import Sympy, evaluate, to_sympy
+from linegraph.ir.dag import Dag, Node
+from linegraph.symbolic.simplification.plain import simplify
 
 x, y = sympy.symbols("x y")
 VALUES = {"x": 1.7, "y": -0.6}

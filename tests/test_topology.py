@@ -17,17 +17,17 @@ import sympy
 from spec_models import model_of
 
 from linegraph import derive
-from linegraph.algebra import Floats
+from linegraph.algebra.protocol import Floats
 from linegraph.errors import ModelError
-from linegraph.graph import Edge, Projection
-from linegraph.paper import paper_matrices
-from linegraph.topology import Topology, choose_forest
+from linegraph.graph.forest import Topology, choose_forest
+from linegraph.graph.multigraph import Edge, Projection
+from linegraph.paper.joint_form import paper_matrices
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from linegraph.graph import IntegerMatrix
-    from linegraph.kinematics import KinematicTree
+    from linegraph.graph.multigraph import IntegerMatrix
+    from linegraph.kinematics.links import KinematicTree
 
 SEEDS = range(40)
 SMALL = range(12)

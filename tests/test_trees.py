@@ -19,12 +19,12 @@ from emitted import load
 from spec_models import model_of
 
 import linegraph as lg
-from linegraph.choices import ABSOLUTE, ABSOLUTE_ANGLE
-from linegraph.emission import render
-from linegraph.transfer import transfer
+from linegraph.emission.emit import render
+from linegraph.model.choices import ABSOLUTE, ABSOLUTE_ANGLE
+from linegraph.numeric.between_trees import transfer
 
 if TYPE_CHECKING:
-    from linegraph.derive import Derivation
+    from linegraph.pipeline import Derivation
 
 SEEDS = range(24)
 TOLERANCE = 1e-9
@@ -158,14 +158,14 @@ def test_automatic_coordinates_take_absolute_angles_in_planes_only() -> None:
 
 
 def four_bar() -> lg.Model:
-    from linegraph import modelfile
+    from linegraph.readers import modelfile
 
     examples = Path(__file__).parent.parent / "examples"
     return modelfile.read(examples / "four_bar" / "four_bar.toml")
 
 
 def test_the_candidates_are_listed_cheapest_first() -> None:
-    from linegraph.trees import candidates, table
+    from linegraph.programs.tree_costs import candidates, table
 
     found = candidates(four_bar())
     counts = [candidate.operations for candidate in found]
@@ -181,7 +181,7 @@ def test_the_candidates_are_listed_cheapest_first() -> None:
 
 def test_candidates_can_be_chosen_as_listed() -> None:
     """What the table says to write gives the numbers it lists."""
-    from linegraph.trees import candidates
+    from linegraph.programs.tree_costs import candidates
 
     for candidate in candidates(four_bar()):
         model = four_bar()

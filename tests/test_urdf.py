@@ -12,15 +12,15 @@ import numpy as np
 import pytest
 from urdf_text import ZOO, axis, inertial, joint, link, mimic, origin, robot
 
-from linegraph.derive import derive
 from linegraph.errors import SourceError
-from linegraph.rotation import from_rpy
-from linegraph.urdf import parse, read
+from linegraph.pipeline import derive
+from linegraph.readers.urdf import parse, read
+from linegraph.spatial.rotation import from_rpy
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from linegraph.model import Model
+    from linegraph.model.builder import Model
 
 ARM = robot(
     link("base"),

@@ -10,7 +10,7 @@ import pytest
 from urdf_text import axis, inertial, joint, link, mimic, origin, robot
 
 from linegraph.errors import SourceError
-from linegraph.urdf import parse, read
+from linegraph.readers.urdf import parse, read
 
 if TYPE_CHECKING:
     from pathlib import Path

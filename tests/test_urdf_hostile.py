@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import pytest
 from urdf_text import ZOO, inertial, joint, link, mimic, robot
 
-from linegraph.derive import derive
 from linegraph.errors import LinegraphError
-from linegraph.model import Model
-from linegraph.urdf import parse
+from linegraph.model.builder import Model
+from linegraph.pipeline import derive
+from linegraph.readers.urdf import parse
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -17,14 +17,14 @@ import numpy as np
 import pytest
 from emitted import load
 
-from linegraph.emission import render
+from linegraph.emission.emit import render
 from linegraph.errors import LinegraphError
-from linegraph.urdf import parse
+from linegraph.readers.urdf import parse
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from linegraph.model import Model
+    from linegraph.model.builder import Model
 
 INERTIAL = (
     '<inertial><origin xyz="0 0.1 -0.5"/><mass value="2"/>'
@@ -92,7 +92,7 @@ def checked(model: Model, folder: Path) -> None:
 
 def plain() -> tuple[np.ndarray, np.ndarray]:
     """M and h of the robot by the float reference."""
-    from linegraph.derive import derive
+    from linegraph.pipeline import derive
 
     names = ["r", "one", "two", "three", "first", "second", "third"]
     numeric = derive(parse(robot(names), "r.urdf")).numeric()

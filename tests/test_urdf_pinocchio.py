@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from urdf_text import ZOO, axis, inertial, joint, link, mimic, origin, robot
 
-from linegraph.derive import derive
 from linegraph.errors import LinegraphError
-from linegraph.urdf import parse, read
+from linegraph.pipeline import derive
+from linegraph.readers.urdf import parse, read
 
 pytest.importorskip("pinocchio")
 import pinocchio_models as peers
@@ -19,7 +19,7 @@ import pinocchio_models as peers
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from linegraph.model import Model
+    from linegraph.model.builder import Model
 
 TOLERANCE = 1e-10
 STATES = 10

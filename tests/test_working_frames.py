@@ -17,20 +17,22 @@ from pinocchio_models import robots_folder
 from spec_models import model_of
 from test_joints import KINDS, pair, pair_state
 
-from linegraph import Model, derive, orthogonality, urdf
-from linegraph.algebra import Floats
-from linegraph.articulated import forward_dynamics
-from linegraph.composite_bias import bias_beside_mass
-from linegraph.emission import render
-from linegraph.loads import Applied
-from linegraph.mass_matrix import mass_matrix
-from linegraph.vector import ZERO
-from linegraph.working_frames import shortened
+from linegraph import Model, derive
+from linegraph.algebra.protocol import Floats
+from linegraph.dynamics import orthogonality
+from linegraph.dynamics.applied_forces import Applied
+from linegraph.dynamics.articulated import forward_dynamics
+from linegraph.dynamics.composite_bias import bias_beside_mass
+from linegraph.dynamics.mass_matrix import mass_matrix
+from linegraph.emission.emit import render
+from linegraph.kinematics.working_frames import shortened
+from linegraph.readers import urdf
+from linegraph.spatial.vector import ZERO
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from linegraph.kinematics import KinematicTree
+    from linegraph.kinematics.links import KinematicTree
 
 SAME = 1e-12  # measured 3e-13 at worst, mostly 1e-14
 ROUNDING = 1e-14  # of robots

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from linegraph import Derivation
-    from linegraph.base_parameters import BaseParameters
+    from linegraph.identification.base_parameters import BaseParameters
 
 Array = Any
 

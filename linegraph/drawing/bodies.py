@@ -33,7 +33,7 @@ from linegraph.drawing.scene import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from linegraph.graph import Edge
+    from linegraph.graph.multigraph import Edge
 
 HEIGHT, STEM = 48, 26
 """Of a body's region, and of the stem from its top."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.body import GROUND
+from linegraph.components.body import GROUND
 from linegraph.drawing.letters import clean
 from linegraph.drawing.looks import DASHES, PLAIN, is_arm, kinds_of
 from linegraph.drawing.pictures import chosen_panels
@@ -12,8 +12,8 @@ from linegraph.drawing.pictures import chosen_panels
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from linegraph.derive import Derivation
-    from linegraph.topology import Topology
+    from linegraph.graph.forest import Topology
+    from linegraph.pipeline import Derivation
 
 _STYLES = {kind: "dashed" if dash else "solid" for kind, dash in DASHES.items()}
 

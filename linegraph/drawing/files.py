@@ -16,7 +16,7 @@ from linegraph.files import is_stream, write_file
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from linegraph.derive import Derivation
+    from linegraph.pipeline import Derivation
 
 ENDINGS = (".svg", ".png", ".dot")
 

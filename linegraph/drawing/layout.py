@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from linegraph.body import GROUND
+from linegraph.components.body import GROUND
 from linegraph.drawing.bands import GAP, Bands, Cell, Link
 from linegraph.drawing.bodies import HEIGHT, Body, Shape, shape
 from linegraph.drawing.letters import short, width
@@ -20,7 +20,7 @@ from linegraph.drawing.scene import NORMAL, SMALL
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from linegraph.graph import Edge, Projection
+    from linegraph.graph.multigraph import Edge, Projection
 
 DOT, LABEL_BAND = 18, 17
 """Heights of bands of plain vertices and of labels."""

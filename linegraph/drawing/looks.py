@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.body import GROUND
-from linegraph.components.forces import NetworkForce
+from linegraph.components.body import GROUND
+from linegraph.components.scalar.forces import NetworkForce
 from linegraph.drawing.scene import BRANCH, GREY, Pen
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from linegraph.graph import Edge
-    from linegraph.model import Model
+    from linegraph.graph.multigraph import Edge
+    from linegraph.model.builder import Model
 
 BRANCH_PEN, CHORD_PEN, OPEN_PEN = Pen(BRANCH, 3), Pen(GREY, 1.2), Pen(GREY, 1.2)
 

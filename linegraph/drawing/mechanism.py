@@ -44,7 +44,7 @@ from linegraph.drawing.symbols import (
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from linegraph.derive import Derivation
+    from linegraph.pipeline import Derivation
 
 SIGN, SIGN_HIGH = 56, 24
 LONG_SIGNS = ("revolute", "prismatic", "cylindrical", "helical", "compound", "planar")

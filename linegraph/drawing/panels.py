@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.body import GROUND
+from linegraph.components.body import GROUND
 from linegraph.drawing.bodies import FAN, HEIGHT, drawn
 from linegraph.drawing.layout import ARCH, LEG, RISE, Plan, Route, label_of, plan
 from linegraph.drawing.letters import short, width
@@ -30,7 +30,7 @@ from linegraph.drawing.scene import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from linegraph.graph import Projection
+    from linegraph.graph.multigraph import Projection
 
 TITLE, BELOW = 30, 30
 """Space above a panel for its title, and below the rail for what stands there."""

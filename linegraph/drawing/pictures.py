@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.checks import nearest
-from linegraph.domains import SPATIAL
+from linegraph.components.domains import SPATIAL
+from linegraph.components.validation import nearest
 from linegraph.drawing.legend import body_entries, edge_entries, legend
 from linegraph.drawing.letters import short, width
 from linegraph.drawing.looks import kinds_of
@@ -19,9 +19,9 @@ from linegraph.errors import ModelError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from linegraph.derive import Derivation
-    from linegraph.graph import Projection
-    from linegraph.topology import Topology
+    from linegraph.graph.forest import Topology
+    from linegraph.graph.multigraph import Projection
+    from linegraph.pipeline import Derivation
 
 MARGIN, APART, LEAST_LEGEND = 16, 28, 420
 WIDEST = 1100

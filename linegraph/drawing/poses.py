@@ -6,21 +6,21 @@ from dataclasses import dataclass, field
 from math import sqrt
 from typing import TYPE_CHECKING
 
-from linegraph.body import GROUND, Placement
-from linegraph.elements import Load
+from linegraph.components.body import GROUND, Placement
+from linegraph.components.forces import Load
 from linegraph.errors import ModelError
-from linegraph.frames import seated
-from linegraph.kinematics import Seat, compose, mass_center, resolved
-from linegraph.search import at_some_time
-from linegraph.vector import Vector, transpose
+from linegraph.kinematics.ground_frames import seated
+from linegraph.kinematics.links import Seat, compose, mass_center, resolved
+from linegraph.numeric.loop_closure import at_some_time
+from linegraph.spatial.vector import Vector, transpose
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from linegraph.closure import Chords
-    from linegraph.derive import Derivation
-    from linegraph.joints import Joint
-    from linegraph.numeric import Numeric
+    from linegraph.components.joints import Joint
+    from linegraph.dynamics.chords import Chords
+    from linegraph.numeric.reference import Numeric
+    from linegraph.pipeline import Derivation
 
 GROUND_LINK = -1
 

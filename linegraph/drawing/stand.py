@@ -15,7 +15,7 @@ from linegraph.drawing.views import chosen_view
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from linegraph.vector import Vector
+    from linegraph.spatial.vector import Vector
 
 WIDE, HIGH, BORDER, MOST_BORDER = 340, 270, 95, 170
 """Room for the mechanism, which grows with the number of its joints, and around it for names."""

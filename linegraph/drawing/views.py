@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import sqrt
 from typing import TYPE_CHECKING
 
-from linegraph.vector import Vector, cross, dot, scale, subtract
+from linegraph.spatial.vector import Vector, cross, dot, scale, subtract
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

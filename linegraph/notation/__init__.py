@@ -18,8 +18,8 @@ from linegraph.notation.names import guessed, names_of
 from linegraph.notation.plain import Plain
 
 if TYPE_CHECKING:
-    from linegraph.derive import Derivation
     from linegraph.notation.tree import Math, Name
+    from linegraph.pipeline import Derivation
 
 
 class Notation:

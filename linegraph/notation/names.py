@@ -19,8 +19,8 @@ from linegraph.notation.tree import (
 from linegraph.notation.writing import SUBSCRIPTS
 
 if TYPE_CHECKING:
-    from linegraph.derive import Derivation
-    from linegraph.model import Model
+    from linegraph.model.builder import Model
+    from linegraph.pipeline import Derivation
 
 _LETTER_NAMES = (
     *("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa"),

@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from linegraph.choices import ABSOLUTE, JOINT
-from linegraph.formulation import DEPTH, INERTIA_WEIGHT, NOTHING_ACTS, edge_weights
-from linegraph.joints import Compound
+from linegraph.components.joints import Compound
+from linegraph.formulation.formulate import DEPTH, INERTIA_WEIGHT, NOTHING_ACTS, edge_weights
+from linegraph.model.choices import ABSOLUTE, JOINT
 from linegraph.notation.expressions import number
 from linegraph.report.document import Block, Code, Inline, Section, Table, Text, said
 from linegraph.report.graphs import called
 from linegraph.report.system import count, listed
 
 if TYPE_CHECKING:
-    from linegraph.graph import Edge
+    from linegraph.graph.multigraph import Edge
     from linegraph.report.subject import Subject
 
 

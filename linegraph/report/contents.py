@@ -18,7 +18,7 @@ from linegraph.report.system import conventions, described
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from linegraph.derive import Derivation
+    from linegraph.pipeline import Derivation
 
 
 SOURCE = re.compile(r"Derived from [^.]*\b[0-9a-f]{64}\.?")

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from linegraph.drawing.scene import Scene
-    from linegraph.graph import IntegerMatrix
-    from linegraph.topology import Topology
+    from linegraph.graph.forest import Topology
+    from linegraph.graph.multigraph import IntegerMatrix
 
 
 @dataclass(frozen=True)

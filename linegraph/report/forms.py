@@ -5,7 +5,9 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from linegraph.dynamics.regularity import cause
 from linegraph.errors import ModelError
+from linegraph.ir.program import Result, leaves, operations_of
 from linegraph.notation.plain import Plain
 from linegraph.notation.tree import (
     ONE,
@@ -21,13 +23,11 @@ from linegraph.notation.tree import (
     total,
 )
 from linegraph.notation.writing import pieces
-from linegraph.program import Result, leaves, operations_of
-from linegraph.regularity import cause
+from linegraph.programs.workspace import Functions
 from linegraph.report.document import Block, Code, Formulas, Inline, Listing, Row, Section, said
 from linegraph.report.intermediates import listed_program
 from linegraph.report.laws import vector
 from linegraph.report.system import letter, listed, motion_equation
-from linegraph.shared import Functions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -230,7 +230,7 @@ class Forms:
                     "The velocities of mechanics are the rates of the coordinates: N is the identity."
                 )
             ]
-        from linegraph import orthogonality
+        from linegraph.dynamics import orthogonality
 
         f = self._functions
         rates = orthogonality.coordinate_rates(f.tree, f.dag, f.q, f.v)
@@ -265,7 +265,7 @@ class Forms:
         return Section("Constraints of the loops", tuple(blocks))
 
     def _counted(self) -> list[Block]:
-        from linegraph.closed_remarks import freedoms_text
+        from linegraph.programs.loop_remarks import freedoms_text
 
         derivation = self._subject.derivation
         if any(p.value is None for p in self._subject.model.parameters.values()):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from linegraph.domains import ROTATION, SPATIAL, TRANSLATION
+from linegraph.components.domains import ROTATION, SPATIAL, TRANSLATION
 from linegraph.drawing.mechanism import mechanism_scene
 from linegraph.drawing.pictures import chosen_panels, graph_scene
 from linegraph.errors import ModelError
@@ -25,9 +25,9 @@ from linegraph.report.document import (
 from linegraph.report.system import count, listed
 
 if TYPE_CHECKING:
-    from linegraph.graph import Edge, Projection
+    from linegraph.graph.forest import Topology
+    from linegraph.graph.multigraph import Edge, Projection
     from linegraph.report.subject import Subject
-    from linegraph.topology import Topology
 
 MOST_WRITTEN = 20
 """Of a graph with more edges equations are read off their matrix, which is not repeated, either."""

@@ -33,7 +33,7 @@ from linegraph.report.text import visible_words
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from linegraph.graph import IntegerMatrix
+    from linegraph.graph.multigraph import IntegerMatrix
     from linegraph.notation.tree import Math
 
 MOST_COLUMNS = 28

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from linegraph.expression import SYMBOL, Node
+from linegraph.ir.dag import SYMBOL, Node
+from linegraph.ir.program import Program
 from linegraph.notation.tree import FUNCTION, ZERO, Math, Name
-from linegraph.program import Program
-from linegraph.programs import module_of
+from linegraph.programs.register import module_of
 from linegraph.report.document import Group, Listing, Row
 from linegraph.report.nodes import Nodes
 

@@ -31,7 +31,7 @@ from linegraph.report.text import visible_words
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from linegraph.graph import IntegerMatrix
+    from linegraph.graph.multigraph import IntegerMatrix
 
 WIDTH = 84
 """Characters of plain text that a line of formulas holds."""

@@ -5,13 +5,14 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from linegraph.body import MASS_CENTER
-from linegraph.domains import SPATIAL
-from linegraph.elements import Element, Load
-from linegraph.elements.load import BODY
-from linegraph.expression import SUB, SYMBOL, Node
-from linegraph.joints.base import BY_INPUT
-from linegraph.network.static import LOOP
+from linegraph.algebra.residues import CONSTANT
+from linegraph.components.body import MASS_CENTER
+from linegraph.components.domains import SPATIAL
+from linegraph.components.forces import Element, Load
+from linegraph.components.forces.load import BODY
+from linegraph.components.joints.base import BY_INPUT
+from linegraph.ir.dag import SUB, SYMBOL, Node
+from linegraph.networks.static import LOOP
 from linegraph.notation.expressions import number
 from linegraph.notation.plain import Plain
 from linegraph.notation.tree import (
@@ -29,8 +30,7 @@ from linegraph.notation.tree import (
 from linegraph.report.document import Block, Code, Formulas, Inline, Row, Section, Table, Text, said
 from linegraph.report.nodes import Nodes
 from linegraph.report.system import letter
-from linegraph.residues import CONSTANT
-from linegraph.vector import times
+from linegraph.spatial.vector import times
 
 LONGEST_CELL = 60
 """Motions of joints that take more characters stand below their table."""
@@ -38,8 +38,8 @@ LONGEST_CELL = 60
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from linegraph.joints import Joint
-    from linegraph.network.edges import Branch
+    from linegraph.components.joints import Joint
+    from linegraph.networks.edges import Branch
     from linegraph.report.subject import Subject
 
 

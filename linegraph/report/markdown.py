@@ -26,7 +26,7 @@ from linegraph.report.latex import aligned
 from linegraph.report.text import matrix_lines, visible_words
 
 if TYPE_CHECKING:
-    from linegraph.topology import Topology
+    from linegraph.graph.forest import Topology
 
 WIDTH = 84
 _SPECIAL = re.compile(r"([\\`*_{}\[\]<>()#+.!|~$&^-])")

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from linegraph.body import MASS_CENTER
+from linegraph.components.body import MASS_CENTER
 from linegraph.errors import ModelError
+from linegraph.ir.program import Result, operations_of
 from linegraph.notation.plain import Plain
 from linegraph.notation.tree import ZERO, Listed, Math, Name, total
-from linegraph.program import Result, operations_of
 from linegraph.report.document import Block, Formulas, Row, said
 from linegraph.report.laws import vector
 
@@ -78,7 +78,7 @@ def centers(subject: Subject) -> list[Block]:
 
 def _rows(subject: Subject) -> list[Row]:
     """The place and the velocity of every mass centre; none where they have too many terms."""
-    from linegraph.shared import Functions
+    from linegraph.programs.workspace import Functions
 
     scheme = Functions(subject.derivation, subject.folded).scheme
     frames = {body: scheme.center(body) for body in subject.model.bodies}
@@ -98,8 +98,8 @@ def _rows(subject: Subject) -> list[Row]:
 
 
 def _closed(subject: Subject, entries: list[Any]) -> list[Math]:
-    from linegraph.simplification import Simplifier
-    from linegraph.sympy_walk import Sympy
+    from linegraph.algebra.sympy_scalars import Sympy
+    from linegraph.symbolic.simplification import Simplifier
 
     names = Sympy(subject.derivation.symbol_names)
     simplifier = Simplifier(lambda symbol: names.symbol(*symbol), subject.level, MOST_PRODUCTS)

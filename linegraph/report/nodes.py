@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from linegraph.expression import ADD, DIV, MUL, NEG, SUB, SYMBOL, Node
+from linegraph.ir.dag import ADD, DIV, MUL, NEG, SUB, SYMBOL, Node
 from linegraph.notation.expressions import RENAMED, number
 from linegraph.notation.tree import (
     ONE,

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from linegraph.closed_remarks import freedoms_text
-from linegraph.closure import equations
-from linegraph.domains import DOMAINS
-from linegraph.parameters import Parameter
-from linegraph.regularity import cause
+from linegraph.components.domains import DOMAINS
+from linegraph.components.parameters import Parameter
+from linegraph.dynamics.chords import equations
+from linegraph.dynamics.regularity import cause
+from linegraph.programs.loop_remarks import freedoms_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from linegraph.assembly import Assembly
-    from linegraph.derive import Derivation
-    from linegraph.graph import IntegerMatrix
-    from linegraph.kinematics import KinematicTree
-    from linegraph.model import Model
-    from linegraph.network import Network
-    from linegraph.topology import Topology
+    from linegraph.graph.forest import Topology
+    from linegraph.graph.multigraph import IntegerMatrix
+    from linegraph.kinematics.links import KinematicTree
+    from linegraph.model.builder import Model
+    from linegraph.networks import Network
+    from linegraph.numeric.assembly import Assembly
+    from linegraph.pipeline import Derivation
 
 WIDEST_TABLE = 120
 """A matrix wider than this many characters is written row by row as sums."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.domains import ROTATION, TRANSLATION
-from linegraph.elements import Load
+from linegraph.components.domains import ROTATION, TRANSLATION
+from linegraph.components.forces import Load
 from linegraph.notation.tree import TRANSPOSED, ZERO, Math, Name, Over, Power, Product, Sum, total
 from linegraph.report.document import Block, Code, Formulas, Inline, Row, Section, said
 from linegraph.report.graphs import called

@@ -7,21 +7,21 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from linegraph.domains import DOMAINS, ROTATION, TRANSLATION
+from linegraph.components.domains import DOMAINS, ROTATION, TRANSLATION
+from linegraph.components.parameters import resolver
 from linegraph.notation import Notation
 from linegraph.notation.expressions import number
 from linegraph.notation.names import shaped
 from linegraph.notation.tree import ZERO, Listed, Math, Name, total
-from linegraph.parameters import resolver
-from linegraph.simplification.numbers import plain
+from linegraph.symbolic.simplification.numbers import plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from linegraph.derive import Derivation
-    from linegraph.domains import Domain
-    from linegraph.graph import IntegerMatrix
-    from linegraph.program import Quantity
+    from linegraph.components.domains import Domain
+    from linegraph.graph.multigraph import IntegerMatrix
+    from linegraph.ir.program import Quantity
+    from linegraph.pipeline import Derivation
 
 LETTERS = {"w": "ω", "tau": "τ", "dphi": "Φ", "phi": "φ", "psi": "ψ"}
 """Letters of domains that are written otherwise."""
@@ -76,7 +76,7 @@ class Subject:
     @cached_property
     def algebra(self) -> Any:
         """sympy, where laws are shown."""
-        from linegraph.sympy_walk import Sympy
+        from linegraph.algebra.sympy_scalars import Sympy
 
         names = {"q": self.q_names, "v": self.v_names, "u": self.u_names}
         return Sympy(names)
@@ -152,7 +152,7 @@ class Subject:
     @cached_property
     def multiplier_symbols(self) -> dict[str, str]:
         """The symbols of λ by their names."""
-        from linegraph.closure import equations
+        from linegraph.dynamics.chords import equations
 
         names = (equation.multiplier.name for equation in equations(self.tree))
         return dict(zip(names, self.derivation.symbol_names["lam"], strict=True))
@@ -160,7 +160,7 @@ class Subject:
     @cached_property
     def multipliers(self) -> list[Quantity]:
         """λ, by the names of their symbols."""
-        from linegraph.closure import equations
+        from linegraph.dynamics.chords import equations
 
         found = (equation.multiplier for equation in equations(self.tree))
         return [replace(q, name=self.multiplier_symbols[q.name]) for q in found]

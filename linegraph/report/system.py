@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from linegraph.joints.base import BY_INPUT
+from linegraph.components.joints.base import BY_INPUT
 from linegraph.notation.tree import (
     TRANSPOSED,
     ZERO,
@@ -19,7 +19,7 @@ from linegraph.notation.tree import (
 from linegraph.report.document import Block, Code, Inline, Section, Table, Text, said
 
 if TYPE_CHECKING:
-    from linegraph.joints import Joint
+    from linegraph.components.joints import Joint
     from linegraph.report.subject import Subject
 
 AXES = ("xx", "xy", "xz", "yy", "yz", "zz")

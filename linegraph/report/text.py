@@ -25,7 +25,7 @@ from linegraph.report.lines import broken
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from linegraph.graph import IntegerMatrix
+    from linegraph.graph.multigraph import IntegerMatrix
 
 WIDTH = 96
 UNDERLINES = "=-~"

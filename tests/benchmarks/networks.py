@@ -13,8 +13,10 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from linegraph import Model, emission, modelfile
-from linegraph.program import Program
+from linegraph import Model
+from linegraph.emission import emit as emission
+from linegraph.ir.program import Program
+from linegraph.readers import modelfile
 
 ARM = Path(__file__).parents[2] / "examples" / "arm_with_drives" / "arm_with_drives.toml"
 RUNS = 15

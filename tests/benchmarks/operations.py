@@ -56,7 +56,7 @@ def emitted(robot: str) -> str:
     sys.path[:0] = [str(Path(__file__).parent.parent), str(Path(__file__).parent.parent.parent)]
     from pinocchio_models import robots_folder
 
-    from linegraph.cli import main
+    from linegraph.cli.main import main
 
     file, base, locks = WATCHED[robot]
     with tempfile.TemporaryDirectory() as folder:

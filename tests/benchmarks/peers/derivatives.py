@@ -26,8 +26,8 @@ def main() -> None:
     import robots
     from casadi_peer import FREE
 
-    from linegraph.emission import module_for
-    from linegraph.reading import read
+    from linegraph.emission.emit import module_for
+    from linegraph.readers.read import read
 
     folder = environment.BUILD / "derivatives"
     for name in sys.argv[1:] or ("ur5", "panda", "anymal", "talos"):

@@ -1,0 +1,363 @@
+"""Differentiation of the expression DAG, and rewriting it: what is derived from it stays a DAG.
+
+A *gradient* is sparse: only the symbols that a node depends on have an entry. Functions that have a kink
+(abs, min, max) have the derivative of one side there: abs that of positive numbers, min and max that of
+their first argument, or of the second one where the first is constant. Powers such as x^(3/2) are
+differentiated as powers, whose derivatives are finite where those of the root in them are not.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from linegraph.algebra.jets import derivatives
+from linegraph.algebra.powers import power
+from linegraph.algebra.roots import Roots
+from linegraph.errors import ModelError
+from linegraph.ir.dag import ADD, DIV, MUL, NEG, SUB, SYMBOL, Dag, Node
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterable, Mapping
+
+    from linegraph.algebra.protocol import Algebra
+    from linegraph.algebra.scalar import Scalar
+
+Symbol = tuple[str, Any]
+"""The argument and the place that name a symbol."""
+
+Gradient = dict[Symbol, "Scalar"]
+
+SMALLEST = 1e-300
+"""Keeps a quotient of zeros zero."""
+
+
+class Calculus:
+    """Derivatives and supports of the nodes of one DAG, each found once.
+
+    Example:
+        >>> dag = Dag()
+        >>> x, y = dag.symbol("x"), dag.symbol("y")
+        >>> calculus = Calculus(dag)
+        >>> sorted(calculus.gradient(3 * x + y).items())
+        [(('x', None), 3), (('y', None), 1)]
+        >>> calculus.derivative(x * y, ("x", None)) is y
+        True
+    """
+
+    def __init__(
+        self,
+        dag: Dag,
+        constants: Collection[str] = (),
+        chain: Mapping[Symbol, Gradient] | None = None,
+    ) -> None:
+        """Nothing is known yet.
+
+        Args:
+            dag: whose nodes are differentiated.
+            constants: arguments whose symbols are numbers to it.
+            chain: the derivatives of symbols that are not independent, by those that are.
+        """
+        self.dag = dag
+        self._constants = constants
+        self._chain = chain or {}
+        self._gradients: dict[int, Gradient] = {}
+        self._supports: dict[int, frozenset[Symbol]] = {}
+        self._kinked: dict[int, bool] = {}
+        self._roots = Roots(dag)
+
+    def support(self, x: Scalar) -> frozenset[Symbol]:
+        """The symbols that a scalar depends on."""
+        if not isinstance(x, Node):
+            return frozenset()
+        for node in _below(x, self._supports):
+            if node.op == SYMBOL:
+                named = node.a not in self._constants
+                self._supports[node.index] = frozenset({(node.a, node.b)} if named else ())
+            else:
+                parts = [self._supports[p.index] for p in operands(node)]
+                self._supports[node.index] = parts[0].union(*parts[1:])
+        return self._supports[x.index]
+
+    def derivative(self, x: Scalar, by: Symbol) -> Scalar:
+        """The partial derivative by one symbol."""
+        return self.gradient(x).get(by, 0)
+
+    def gradient(self, x: Scalar) -> Gradient:
+        """The partial derivatives by every symbol that a scalar depends on; those that are 0 left out.
+
+        Raises:
+            ModelError: a function has no derivative.
+        """
+        if not isinstance(x, Node):
+            return {}
+        for node in _below(x, self._gradients):
+            self._gradients[node.index] = self._of(node)
+        return self._gradients[x.index]
+
+    def _of(self, node: Node) -> Gradient:
+        if node.op == SYMBOL:
+            symbol = (node.a, node.b)
+            return {} if node.a in self._constants else dict(self._chain.get(symbol, {symbol: 1}))
+        if node.op == "sqrt" and node.a.op == MUL and node.a.a is node.a.b:
+            # the root of a square is an absolute value, and has the slopes of one
+            return _combined([(self._side(node.a.a), self._gradients[node.a.a.index])])
+        if node.op in _STEEP and self._has_kink(node.a):
+            return self._steep(node)
+        rooted = self._roots.power_in(node)
+        if rooted is not None:
+            base, e, rest = rooted.base, rooted.exponent, rooted.rest
+            of_base = e * (rest * power(base, e - 1, self.dag))
+            return _combined(
+                [(of_base, self.gradient(base)), (power(base, e, self.dag), self.gradient(rest))]
+            )
+        parts = zip(self._partials(node), operands(node), strict=True)
+        return _combined((factor, self._gradients[x.index]) for factor, x in parts)
+
+    def _steep(self, node: Node) -> Gradient:
+        """Of a function whose slope may be infinite, of an argument that may be constant there.
+
+        sqrt(max(x, 0)) is 0 for negative x, and so is its derivative: 0 over 0 counts as 0.
+        """
+        divisor = _STEEP[node.op](self.dag, node)
+        found: Gradient = {}
+        for symbol, slope in self._gradients[node.a.index].items():
+            moves = self.dag.function("sign", slope)
+            found[symbol] = slope / (divisor + (1 - moves * moves))
+        return {symbol: -x for symbol, x in found.items()} if node.op == "acos" else found
+
+    def _has_kink(self, x: Scalar) -> bool:
+        """Whether a scalar depends on what may be constant on one side: abs, min, max."""
+        if not isinstance(x, Node):
+            return False
+        for node in _below(x, self._kinked):
+            own = node.op in ("abs", "min", "max")
+            self._kinked[node.index] = own or any(self._kinked[p.index] for p in operands(node))
+        return self._kinked[x.index]
+
+    def _partials(self, node: Node) -> list[Scalar]:
+        """The derivatives of one operation by those of its operands that are nodes."""
+        a, b = node.a, node.b
+        pairs: list[tuple[Any, Callable[[], Scalar]]]
+        if node.op == NEG:
+            pairs = [(a, lambda: -1)]
+        elif node.op == ADD:
+            pairs = [(a, lambda: 1), (b, lambda: 1)]
+        elif node.op == SUB:
+            pairs = [(a, lambda: 1), (b, lambda: -1)]
+        elif node.op == MUL:
+            pairs = [(a, lambda: b), (b, lambda: a)]
+        elif node.op == DIV:
+            pairs = [(a, lambda: 1 / b), (b, lambda: -node / b)]
+        elif b is None:
+            pairs = [(a, lambda: self.slope(node))]
+        else:
+            first, second = self._slopes(node)
+            pairs = [(a, lambda: first), (b, lambda: second)]
+        return [partial() for operand, partial in pairs if isinstance(operand, Node)]
+
+    def slope(self, node: Node) -> Scalar:
+        """The derivative of a function of one argument."""
+        if node.op == "abs":
+            return self._side(node.a)
+        if node.op == "sign":
+            return 0
+        found = derivatives(node.op, self.dag, node.a, node)
+        if found is None:
+            raise ModelError("", f"{node.op}(...) has no derivative")
+        return found[0]
+
+    def _side(self, x: Scalar) -> Scalar:
+        """1 where x is not negative, else -1."""
+        sign = self.dag.function("sign", x)
+        return sign + (1 - sign * sign)
+
+    def _slopes(self, node: Node) -> tuple[Scalar, Scalar]:
+        """Of a function of two arguments."""
+        a, b = node.a, node.b
+        if node.op == "atan2":
+            squared = a * a + b * b
+            return b / squared, -a / squared
+        if not self.gradient(a):
+            return 0, self._share(node.op, b, a)
+        share = self._share(node.op, a, b)
+        return share, 1 - share
+
+    def _share(self, op: str, a: Scalar, b: Scalar) -> Scalar:
+        """1 where min(a, b) or max(a, b) is a, which it is where both are the same; else 0."""
+        side = self.dag.function("sign", a - b if op == "max" else b - a)
+        return 1 + side * (1 - side) / 2
+
+
+def _combined(parts: Iterable[tuple[Scalar, Gradient]]) -> Gradient:
+    """The sum of gradients times factors."""
+    found: Gradient = {}
+    for factor, slopes in parts:
+        for symbol, slope in slopes.items():
+            found[symbol] = found.get(symbol, 0) + factor * slope
+    return {symbol: slope for symbol, slope in found.items() if slope != 0}
+
+
+_STEEP: dict[str, Callable[[Dag, Node], Scalar]] = {
+    "sqrt": lambda dag, node: 2 * node,
+    "asin": lambda dag, node: dag.sqrt(1 - node.a * node.a),
+    "acos": lambda dag, node: dag.sqrt(1 - node.a * node.a),
+}
+"""Functions whose slope is infinite at the end of their range, with what it is divided by."""
+
+
+class Sizes:
+    """The size of the terms that scalars are sums of: what rounding errors are in proportion to.
+
+    Example:
+        >>> dag = Dag()
+        >>> x, y = dag.symbol("x"), dag.symbol("y")
+        >>> difference = Sizes(Calculus(dag))(x - y)
+        >>> from linegraph.algebra.protocol import Floats
+        >>> Replay(Floats(), {("x", None): 3.0, ("y", None): -3.0}.__getitem__)(difference)
+        6.0
+    """
+
+    def __init__(self, calculus: Calculus, unknowns: Collection[str] | None = None) -> None:
+        """Nothing is known yet.
+
+        Args:
+            calculus: of the DAG.
+            unknowns: the arguments whose symbols vary; what depends on none of them is one term, the same
+                number at every evaluation. All symbols vary if left out.
+        """
+        self._calculus, self._dag = calculus, calculus.dag
+        self._unknowns = unknowns
+        self._known: dict[int, Scalar] = {}
+
+    def __call__(self, x: Scalar) -> Scalar:
+        """Sums of absolute values in place of sums."""
+        if not isinstance(x, Node):
+            return abs(x)
+        for node in _below(x, self._known):
+            self._known[node.index] = self._of(node)
+        return self._known[x.index]
+
+    def _of(self, node: Node) -> Scalar:
+        if node.op == SYMBOL or self._given(node):
+            return self._dag.function("abs", node)
+        a, b = (self._operand(part) for part in (node.a, node.b))
+        if node.op == NEG:
+            return a
+        if node.op in (ADD, SUB):
+            return a + b
+        if node.op == MUL:
+            return a * b
+        if node.op == DIV:
+            return a / self._dag.function("abs", node.b)
+        if node.b is not None:
+            return a + b
+        if node.op == "sqrt":
+            return self._of_root(node, a)
+        return (
+            self._dag.function("abs", node)
+            + self._dag.function("abs", self._calculus.slope(node)) * a
+        )
+
+    def _of_root(self, node: Node, a: Scalar) -> Scalar:
+        """Of a root, whose slope is infinite at zero: an error of e a there is one of sqrt(e a) at most."""
+        steep = a / (2 * node + (1e-5 * self._dag.sqrt(a) + SMALLEST))
+        return self._dag.function("abs", node) + steep
+
+    def _given(self, node: Node) -> bool:
+        """Whether a node is the same number at every evaluation."""
+        return self._unknowns is not None and not any(
+            symbol[0] in self._unknowns for symbol in self._calculus.support(node)
+        )
+
+    def _operand(self, x: Any) -> Scalar:
+        if x is None:
+            return 0
+        return self._known[x.index] if isinstance(x, Node) else abs(x)
+
+
+def operands(node: Node) -> list[Node]:
+    """The operands that are nodes."""
+    return [x for x in (node.a, node.b) if isinstance(x, Node)] if node.op != SYMBOL else []
+
+
+def _below(x: Node, known: Mapping[int, Any]) -> list[Node]:
+    """What a node depends on and is not known yet, itself too, in order of construction."""
+    found: dict[int, Node] = {}
+    pending = [x]
+    while pending:
+        node = pending.pop()
+        if node.index not in found and node.index not in known:
+            found[node.index] = node
+            pending += operands(node)
+    return [found[index] for index in sorted(found)]
+
+
+_OPERATIONS: dict[str, Callable[..., Scalar]] = {
+    NEG: lambda a: -a,
+    ADD: lambda a, b: a + b,
+    SUB: lambda a, b: a - b,
+    MUL: lambda a, b: a * b,
+    DIV: lambda a, b: a / b,
+}
+
+
+class Replay:
+    """The same operations over another algebra, or over the same DAG with symbols replaced.
+
+    Args:
+        algebra: where to calculate.
+        symbol: what stands for a symbol there, given its argument and place.
+        number: what stands for a number there; itself if left out.
+
+    Example:
+        >>> from linegraph.algebra.protocol import Floats
+        >>> dag = Dag()
+        >>> x = dag.symbol("x")
+        >>> Replay(Floats(), {("x", None): 3.0}.__getitem__)(x * x)
+        9.0
+    """
+
+    def __init__(
+        self,
+        algebra: Algebra,
+        symbol: Callable[[Symbol], Scalar],
+        number: Callable[[Scalar], Scalar] | None = None,
+    ) -> None:
+        """Nothing is calculated yet; what has been is kept."""
+        self._algebra = algebra
+        self._symbol = symbol
+        self._number = number or (lambda x: x)
+        self._known: dict[int, Scalar] = {}
+
+    def __call__(self, x: Scalar) -> Scalar:
+        """The scalar over the other algebra."""
+        if not isinstance(x, Node):
+            return self._number(x)
+        for node in _below(x, self._known):
+            self._known[node.index] = self._value(node)
+        return self._known[x.index]
+
+    def all(self, given: Iterable[Scalar]) -> list[Scalar]:
+        """Several of them."""
+        return [self(x) for x in given]
+
+    def _value(self, node: Node) -> Scalar:
+        if node.op == SYMBOL:
+            return self._symbol((node.a, node.b))
+        given = [
+            self._known[x.index] if isinstance(x, Node) else self._number(x)
+            for x in (node.a, node.b)
+            if x is not None
+        ]
+        action = _OPERATIONS.get(node.op)
+        return action(*given) if action else self._algebra.function(node.op, *given)
+
+
+def substitute(x: Scalar, dag: Dag, values: Mapping[Symbol, Scalar]) -> Scalar:
+    """A scalar of a DAG with some symbols replaced by others of its scalars."""
+    return substitution(dag, values)(x)
+
+
+def substitution(dag: Dag, values: Mapping[Symbol, Scalar]) -> Replay:
+    """The same for many scalars."""
+    return Replay(dag, lambda symbol: values[symbol] if symbol in values else dag.symbol(*symbol))

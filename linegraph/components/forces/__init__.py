@@ -1,0 +1,15 @@
+"""The register of force elements: one file each, one line here, one line in `model.builder.Model`."""
+
+from linegraph.components.forces.base import Element
+from linegraph.components.forces.damper import Damper
+from linegraph.components.forces.friction import Friction
+from linegraph.components.forces.law import Law
+from linegraph.components.forces.load import Load
+from linegraph.components.forces.spring import Spring
+from linegraph.components.forces.stop import Stop
+
+ELEMENTS: dict[str, type[Element]] = {
+    kind.kind: kind for kind in (Spring, Damper, Friction, Stop, Law)
+}
+
+__all__ = ["ELEMENTS", "Damper", "Element", "Friction", "Law", "Load", "Spring", "Stop"]

@@ -1,0 +1,70 @@
+"""What every force element answers; each type is one file beside this one.
+
+An *element* is an edge with a law: its through variable, a force or a torque, follows from its across
+variable and that variable's rate. It acts between two points, along the line that joins them, or inside a
+joint, along the joint's coordinate:
+
+    between = (tail, head)    x is the distance of the two points (m), v its rate
+    joint = name              x is the joint's coordinate (rad or m), v its rate
+
+A positive through variable pulls: points together, a coordinate back. All types answer the same
+questions in the same order:
+
+    values   through   potential
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+
+if TYPE_CHECKING:
+    from linegraph.algebra.protocol import Algebra
+    from linegraph.algebra.scalar import Scalar
+
+
+class Resolve(Protocol):
+    """From a model value, and further names such as x and v, to a scalar.
+
+    The value has no name of its own, so that a law may use any.
+    """
+
+    def __call__(self, value: Any, /, **names: Scalar) -> Scalar:
+        """The scalar of a value."""
+
+
+@dataclass(frozen=True)
+class Element:
+    """Base of all elements.
+
+    Attributes:
+        name: also the name of its edge.
+        between: the terminals (tail, head), each ``body`` or ``body.frame``; or
+        joint: the joint it sits in.
+    """
+
+    name: str
+    between: tuple[str, str] | None = None
+    joint: str | None = None
+
+    kind: ClassVar[str]
+    laws: ClassVar[tuple[str, ...]] = ()
+    """Fields whose expressions see x and v."""
+    needs: ClassVar[tuple[tuple[str, ...], ...]] = ()
+    """Of each group of fields, a model file gives at least one."""
+
+    def values(self) -> tuple[Any, ...]:
+        """The model values its law depends on."""
+        own = [getattr(self, f.name) for f in fields(self) if f.name not in _PLACES]
+        return tuple(value for value in own if value is not None)
+
+    def through(self, algebra: Algebra, x: Scalar, v: Scalar, resolve: Resolve) -> Scalar:
+        """The force (N) or torque (N m) at (x, v)."""
+        raise NotImplementedError
+
+    def potential(self, algebra: Algebra, x: Scalar, resolve: Resolve) -> Scalar:
+        """The energy stored (J); 0 for what stores none, or not by a known formula."""
+        return 0
+
+
+_PLACES = ("name", "between", "joint")

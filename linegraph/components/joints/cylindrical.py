@@ -1,0 +1,83 @@
+"""The cylindrical joint: rotation about an axis and translation along it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from linegraph.components.joints.base import (
+    NO_SHIFT_ACROSS_Z,
+    NO_TURN_ACROSS_Z,
+    Joint,
+    Moments,
+    Motion,
+    Restriction,
+    angle_about_z,
+    round_apart,
+)
+from linegraph.ir.program import Quantity
+from linegraph.spatial.rotation import Rotation, Turn, z_onto
+from linegraph.spatial.vector import ZERO, Matrix, Vector
+
+if TYPE_CHECKING:
+    from linegraph.algebra.protocol import Algebra
+    from linegraph.algebra.scalar import Scalar
+
+
+@dataclass(frozen=True)
+class Cylindrical(Joint):
+    """A shaft in a sleeve: the head turns about `axis` and slides along it, independently.
+
+    q = (angle (rad), displacement (m)), v their rates (rad/s, m/s).
+
+    Example:
+        >>> [c.unit for c in Cylindrical("sleeve", ("housing", "shaft")).velocities()]
+        ['rad/s', 'm/s']
+    """
+
+    kind = "cylindrical"
+    freedoms = 2
+    slides = (2,)
+
+    def positions(self) -> tuple[Quantity, ...]:
+        """The angle and the displacement."""
+        what = f"of cylindrical joint {self.name}"
+        return (
+            Quantity(f"{self.name}_angle", "rad", f"angle {what}"),
+            Quantity(f"{self.name}_displacement", "m", f"displacement {what}"),
+        )
+
+    def velocities(self) -> tuple[Quantity, ...]:
+        """Their rates."""
+        what = f"of cylindrical joint {self.name}"
+        return (
+            Quantity(f"{self.name}_angle", "rad/s", f"angular rate {what}"),
+            Quantity(f"{self.name}_displacement", "m/s", f"sliding rate {what}"),
+        )
+
+    def alignment(self) -> Matrix:
+        """Z onto the axis."""
+        return z_onto(self.axis)
+
+    def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
+        """A turn about z and a shift along it."""
+        turn = Turn(2, algebra.cos(q[0]), algebra.sin(q[0]))
+        z = (0, 0, 1)
+        return Motion(Rotation((turn,)), (0, 0, q[1]), (z, ZERO), (ZERO, z))
+
+    def regroup(self, head: Moments) -> tuple[Moments, Moments]:
+        """Hand over the part of the inertia that looks the same at every angle about the axis.
+
+        Mass and first moment stay: their places in the tail body change with the displacement.
+        """
+        return round_apart(head)
+
+    def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
+        """No shift but along the axis, no turn but about it."""
+        return (*NO_SHIFT_ACROSS_Z, *NO_TURN_ACROSS_Z)
+
+    def measured(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[Scalar, ...]:
+        """The angle about z and the shift along it."""
+        return (angle_about_z(algebra, rotation), displacement[2])

@@ -1,0 +1,50 @@
+"""The fixed joint: a weld."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from linegraph.components.joints.base import NO_SHIFT, NO_TURN, Joint, Motion, Restriction
+from linegraph.spatial.rotation import Rotation
+from linegraph.spatial.vector import ZERO, Matrix, Vector
+
+if TYPE_CHECKING:
+    from linegraph.algebra.protocol import Algebra
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.ir.program import Quantity
+
+
+@dataclass(frozen=True)
+class Fixed(Joint):
+    """Head and tail frames coincide: the two bodies are one.
+
+    Example:
+        >>> Fixed("bolt", ("arm.tip", "tool")).positions()
+        ()
+    """
+
+    kind = "fixed"
+    freedoms = 0
+
+    def positions(self) -> tuple[Quantity, ...]:
+        """None."""
+        return ()
+
+    def velocities(self) -> tuple[Quantity, ...]:
+        """None."""
+        return ()
+
+    def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
+        """No motion."""
+        return Motion(Rotation(), ZERO, (), ())
+
+    def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
+        """No motion at all."""
+        return (*NO_SHIFT, *NO_TURN)
+
+    def measured(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[Scalar, ...]:
+        """There is nothing to measure."""
+        return ()

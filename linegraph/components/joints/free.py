@@ -1,0 +1,133 @@
+"""The free joint: no restriction at all, six velocities."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from linegraph.components.joints.base import Joint, Motion, Restriction
+from linegraph.components.joints.composition import compose, onto
+from linegraph.components.joints.prismatic import Prismatic
+from linegraph.components.joints.spherical import Spherical
+from linegraph.ir.program import Quantity
+from linegraph.spatial.rotation import IDENTITY_MATRIX, Rotation
+from linegraph.spatial.vector import ZERO, skew
+
+if TYPE_CHECKING:
+    from linegraph.algebra.protocol import Algebra
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.spatial.vector import Matrix, Vector
+
+
+@dataclass(frozen=True)
+class Free(Joint):
+    """Six freedoms between tail and head: a floating base.
+
+    q = (position in the tail frame (m), unit quaternion x, y, z, w); v = (velocity of the head's origin
+    (m/s), angular velocity (rad/s)), both in head axes. Or, with `angles`, q = (position, three angles) and
+    v = q̇, with singular orientations as `Spherical` tells. It carries no effort.
+
+    Attributes:
+        angles: the sequence of axes of the turns, e.g. "zyx"; None for the quaternion.
+
+    Example:
+        >>> Free("root", ("ground", "trunk")).rest()
+        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+        >>> [c.name for c in Free("root", ("ground", "trunk"), angles="zyx").velocities()][2:4]
+        ['root_z', 'root_angle1']
+    """
+
+    effort: bool = False
+    angles: str | None = None
+    kind = "free"
+    freedoms = 6
+
+    def __post_init__(self) -> None:
+        """Raises `ModelError` where the sequence of axes is unknown."""
+        _ = self._ball
+
+    @property
+    def _ball(self) -> Spherical:
+        """Its rotation alone."""
+        return Spherical(self.name, self.between, angles=self.angles)
+
+    @property
+    def singular(self) -> bool:
+        """With angles, where the first and the third axis are in line."""
+        return self.angles is not None
+
+    def positions(self) -> tuple[Quantity, ...]:
+        """Position, and quaternion or angles."""
+        place = (
+            Quantity(f"{self.name}_{c}", "m", f"position {c} of {self.name}, in the tail frame")
+            for c in "xyz"
+        )
+        return (*place, *self._ball.positions())
+
+    def velocities(self) -> tuple[Quantity, ...]:
+        """Velocity and angular velocity in head axes, or the rates of position and angles."""
+        stem, frame = ("v", "head axes") if self.angles is None else ("", "tail axes")
+        linear = (
+            Quantity(f"{self.name}_{stem}{c}", "m/s", f"velocity {c} of {self.name}, in {frame}")
+            for c in "xyz"
+        )
+        return (*linear, *self._ball.velocities())
+
+    def rest(self) -> tuple[float, ...]:
+        """Origin, and identity quaternion or no angles."""
+        return (0.0, 0.0, 0.0, *self._ball.rest())
+
+    def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
+        """Shift and turn; with a quaternion the velocities are the components in head axes themselves."""
+        at, none = (q[0], q[1], q[2]), (ZERO, ZERO, ZERO)
+        turn = self._ball.motion(algebra, q[3:], v[3:])
+        if self.angles is None:
+            return Motion(turn.rotation, at, none + IDENTITY_MATRIX, IDENTITY_MATRIX + none)
+        return compose(Motion(Rotation(), at, none, IDENTITY_MATRIX), turn, v[:3], v[3:])
+
+    def sequence(self) -> tuple[tuple[Joint, Rotation], ...]:
+        """Three shifts and three hinges, where it has angles."""
+        if self.angles is None:
+            return ()
+        shifts = tuple(
+            (Prismatic(f"{self.name}_{c}", self.between), onto(axis))
+            for c, axis in zip("xyz", IDENTITY_MATRIX, strict=True)
+        )
+        return (*shifts, *self._ball.sequence())
+
+    def rates(
+        self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]
+    ) -> tuple[Scalar, ...]:
+        """Position rate R v and quaternion rate; v itself with angles."""
+        if self.angles is not None:
+            return v
+        turn = self._ball.motion(algebra, q[3:], v[3:])
+        linear = turn.rotation.out((v[0], v[1], v[2]))
+        return (*linear, *self._ball.rates(algebra, q[3:], v[3:]))
+
+    def adjoint(self, v: tuple[Scalar, ...]) -> tuple[tuple[Scalar, ...], ...]:
+        """``[ω x]`` on both parts, and ``[u x]`` from the turn to the shift; nothing with angles."""
+        if self.angles is not None:
+            return super().adjoint(v)
+        u, w = skew((v[0], v[1], v[2])), skew((v[3], v[4], v[5]))
+        upper = tuple((*turning, *moving) for turning, moving in zip(w, u, strict=True))
+        return (*upper, *((0, 0, 0, *row) for row in w))
+
+    def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
+        """Nothing."""
+        return ()
+
+    def measured(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[Scalar, ...]:
+        """The position and the angles; of a quaternion, whose sign is open, there is no formula."""
+        return (*displacement, *self._ball.measured(algebra, rotation, displacement))
+
+    def duals(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[tuple[Vector, Vector], ...]:
+        """Along and about head axes; with angles along tail axes, and about the axes of the angles."""
+        if self.angles is None:
+            return super().duals(algebra, rotation, displacement)
+        along = tuple((ZERO, row) for row in rotation)
+        return (*along, *self._ball.duals(algebra, rotation, displacement))

@@ -1,0 +1,109 @@
+"""The helical joint: a screw, rotation and translation in a fixed ratio."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Self
+
+from linegraph.components.joints.base import (
+    NO_SHIFT_ACROSS_Z,
+    NO_TURN_ACROSS_Z,
+    Joint,
+    Moments,
+    Motion,
+    Restriction,
+    Thread,
+    angle_about_z,
+    round_apart,
+)
+from linegraph.components.validation import finite
+from linegraph.errors import ModelError
+from linegraph.ir.program import Quantity
+from linegraph.spatial.rotation import Rotation, Turn, z_onto
+from linegraph.spatial.vector import ZERO
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from linegraph.algebra.protocol import Algebra
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.spatial.vector import Matrix, Vector
+
+
+@dataclass(frozen=True)
+class Helical(Joint):
+    """A screw: the head turns about `axis` by the angle q (rad) and advances along it by lead * q / 2 pi.
+
+    v = q̇ (rad/s); the effort is a torque about the axis.
+
+    Attributes:
+        lead: advance in a full turn (m), positive for a right-handed screw; may be a parameter.
+
+    Example:
+        >>> Helical("spindle", ("bed", "nut"), axis=(1, 0, 0), lead=0.005).positions()[0].unit
+        'rad'
+    """
+
+    lead: Any = None
+    kind = "helical"
+    freedoms = 1
+    slides = (2,)
+
+    def __post_init__(self) -> None:
+        """Raises `ModelError` where there is no lead or it is not finite."""
+        who = f'joint "{self.name}"'
+        if self.lead is None:
+            raise ModelError(who, "has no lead; give lead=..., the advance in a full turn (m)")
+        finite((self.lead,), who)
+
+    @property
+    def _advance(self) -> Scalar:
+        """Shift for a turn by 1 rad."""
+        return self.lead * (1 / math.tau)
+
+    def positions(self) -> tuple[Quantity, ...]:
+        """The angle."""
+        return (Quantity(self.name, "rad", f"angle of helical joint {self.name}"),)
+
+    def velocities(self) -> tuple[Quantity, ...]:
+        """Its rate."""
+        return (Quantity(self.name, "rad/s", f"rate of helical joint {self.name}"),)
+
+    def resolved(self, resolve: Callable[[Any], Scalar]) -> Self:
+        """The lead as a scalar."""
+        return self._with(lead=resolve(self.lead))
+
+    def alignment(self) -> Matrix:
+        """Z onto the axis."""
+        return z_onto(self.axis)
+
+    def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
+        """A turn about z with its share of a shift along z."""
+        turn = Turn(2, algebra.cos(q[0]), algebra.sin(q[0]))
+        shift = (0, 0, self._advance * q[0])
+        return Motion(Rotation((turn,)), shift, ((0, 0, 1),), ((0, 0, self._advance),))
+
+    def regroup(self, head: Moments) -> tuple[Moments, Moments]:
+        """Hand over the part of the inertia that looks the same at every angle about the axis.
+
+        The mass stays although one velocity carries both motions: m and the inertia m (lead / 2 pi)^2 it
+        causes about the axis could be traded, but not its momentum along the axis when the tail moves.
+        """
+        return round_apart(head)
+
+    def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
+        """No motion across the axis, and along it only as the thread has it."""
+        return (*NO_SHIFT_ACROSS_Z, *NO_TURN_ACROSS_Z, Thread(self._advance))
+
+    def measured(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[Scalar, ...]:
+        """The angle about z."""
+        return (angle_about_z(algebra, rotation),)
+
+    def duals(
+        self, algebra: Algebra, rotation: Matrix, displacement: Vector
+    ) -> tuple[tuple[Vector, Vector], ...]:
+        """A torque about z."""
+        return (((0, 0, 1), ZERO),)

@@ -1,0 +1,70 @@
+"""Any store: a charge or a co-energy of what it keeps, in any subspace."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from linegraph.components.scalar.base import ACROSS, THROUGH, Component, Pair, Port
+from linegraph.errors import ModelError
+
+if TYPE_CHECKING:
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.components.scalar.base import Own, Terminals
+
+
+@dataclass(frozen=True)
+class AnyStore(Component):
+    """A store in any subspace: ``Y = d/dt Q(X)`` if it keeps X, ``X = d/dt Q(Y)`` if it keeps Y.
+
+    Attributes:
+        between: its vertices (tail, head).
+        domain: its subspace.
+        keeps: "across" or "through".
+        constant: Q for one of what it keeps; or
+        charge: Q as a function of k, what it keeps; or
+        coenergy: its co-energy (J) as a function of k.
+
+    Example:
+        >>> AnyStore("box", ("box", "ground"), "acoustic", constant=1e-7).kept()
+        ('across',)
+    """
+
+    between: Pair
+    domain: str = "electrical"
+    keeps: str = ACROSS
+    constant: Any = None
+    charge: Any = None
+    coenergy: Any = None
+    kind = "store"
+    own: ClassVar[Own] = {"charge": ("k",), "coenergy": ("k",)}
+    needs = (("constant", "charge", "coenergy"),)
+
+    def ports(self) -> tuple[Port, ...]:
+        """Its one edge."""
+        return (Port("", self.domain, self.between),)
+
+    def kept(self) -> tuple[str, ...]:
+        """As chosen."""
+        return (self.keeps,)
+
+    def kept_coenergy(self, at: Terminals) -> Scalar:
+        """Half the constant times the square of what is kept, or as given; not known of a charge."""
+        k = self._kept(at)
+        if self.coenergy is not None:
+            return at.value(self.coenergy, k=k)
+        return 0 if self.constant is None else at.value(self.constant) * (k * k / 2)
+
+    def charges(self, at: Terminals) -> tuple[Scalar, ...] | None:
+        """The charge where it is given as such."""
+        return None if self.charge is None else (at.value(self.charge, k=self._kept(at)),)
+
+    def require_fields(self) -> None:
+        """Refuse a variable that is neither."""
+        super().require_fields()
+        if self.keeps not in (ACROSS, THROUGH):
+            problem = f'keeps "{ACROSS}" or "{THROUGH}", not "{self.keeps}"'
+            raise ModelError(f'{self.kind} "{self.name}"', problem)
+
+    def _kept(self, at: Terminals) -> Scalar:
+        return at.X[0] if self.keeps == ACROSS else at.Y[0]

@@ -1,0 +1,35 @@
+"""The damper of 1-D translation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from linegraph.components.domains import TRANSLATION_1D
+from linegraph.components.scalar.base import Dissipator
+
+if TYPE_CHECKING:
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.components.scalar.base import Terminals
+
+
+@dataclass(frozen=True)
+class TranslationalDamper(Dissipator):
+    """A viscous damper in 1-D translation: ``Y = damping X``.
+
+    Attributes:
+        damping: N s/m.
+
+    Example:
+        >>> TranslationalDamper("strut", ("car", "wheel"), damping=20.0).kind
+        'translational_damper'
+    """
+
+    damping: Any = None
+    kind = "translational_damper"
+    domain_name = TRANSLATION_1D.name
+    required = ("damping",)
+
+    def laws(self, at: Terminals) -> tuple[Scalar, ...]:
+        """In proportion to the rate."""
+        return (at.Y[0] - at.value(self.damping) * at.X[0],)

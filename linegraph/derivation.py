@@ -1,0 +1,283 @@
+"""What one asks a derivation in a notebook: the equations as sympy objects, their functions, their looks."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+    from linegraph.drawing.scene import Scene
+    from linegraph.identification.base_parameters import BaseParameters
+    from linegraph.notebook.functions import Function
+    from linegraph.pipeline import Derivation
+    from linegraph.symbolic.closed_forms import Symbolic
+    from linegraph.symbolic.equation_list import Equations
+    from linegraph.symbolic.state_space import StateSpace
+
+Expr = Any
+
+
+class Face:
+    """The closed forms of a derivation, each derived when it is first asked for.
+
+    With coordinates q, velocities v and inputs u, symbols all of them,
+
+        M(q) v̇ + h(q, v) = Q(q, v, u) + J^T λ        q̇ = N(q) v        J v̇ = γ
+
+    λ, J and γ only where loops or constraints are. Coordinates have the names of joints, their rates are
+    ``name_dot``, accelerations ``a_name``, efforts ``u_name``; velocities that are no rates keep names of
+    their own. `symbol_names` says what they are called where the model has something of such a name.
+
+    Example:
+        >>> from linegraph import Model, derive
+        >>> model = Model("pendulum")
+        >>> m, l = model.parameter("m", 2.0), model.parameter("l", 0.5)
+        >>> model.gravity = (0, 0, -model.parameter("g", 9.81))
+        >>> bob = model.body("bob", mass=m, mass_center=(0, 0, -l))
+        >>> _ = model.revolute("theta", between=("ground", bob), axis=(0, 1, 0))
+        >>> d = derive(model)
+        >>> d.mass_matrix, d.gravity
+        (Matrix([[l**2*m]]), Matrix([[g*l*m*sin(theta)]]))
+        >>> d.equations()
+        [Eq(a_theta*l**2*m + g*l*m*sin(theta), u_theta)]
+        >>> d.function("bias")([0.1], [0.0]).round(6)
+        array([0.979366])
+    """
+
+    @cached_property
+    def symbolic(self) -> Symbolic:
+        """The closed forms, simplified in full."""
+        return self.closed_form()
+
+    def closed_form(
+        self,
+        level: str = "full",
+        *,
+        budget: int | None = None,
+        progress: Callable[[str], None] | None = None,
+    ) -> Symbolic:
+        """All closed forms at one level of simplification.
+
+        Args:
+            level: ``none`` as derived, ``fast`` put together and factored, ``full`` in the shortest form
+                found; see `simplification`.
+            budget: how many products of two terms a quantity may take.
+            progress: told what is being simplified, e.g. ``print``.
+
+        Raises:
+            ModelError: there is no such level.
+        """
+        from linegraph.symbolic.closed_forms import Symbolic
+        from linegraph.symbolic.simplification import BUDGET
+
+        return Symbolic(self._derivation, level, BUDGET if budget is None else budget, progress)
+
+    @property
+    def _derivation(self) -> Derivation:
+        raise NotImplementedError
+
+    # -- symbols
+
+    @property
+    def q(self) -> Expr:
+        """The coordinates, a column of symbols."""
+        return self.symbolic.q
+
+    @property
+    def v(self) -> Expr:
+        """The velocities, a column of symbols."""
+        return self.symbolic.v
+
+    @property
+    def a(self) -> Expr:
+        """The accelerations v̇, a column of symbols ``a_name``."""
+        return self.symbolic.a
+
+    @property
+    def u(self) -> Expr:
+        """The inputs, a column of symbols."""
+        return self.symbolic.u
+
+    # -- equations
+
+    @property
+    def p(self) -> SimpleNamespace:
+        """The parameters, symbols by their names: ``d.p.m``."""
+        from sympy import Symbol
+
+        names = self._derivation.model.parameters
+        return SimpleNamespace(**{name: Symbol(name) for name in names})
+
+    @property
+    def mass_matrix(self) -> Expr:
+        """M(q), symmetric, nv x nv."""
+        return self.symbolic.mass_matrix
+
+    @property
+    def bias(self) -> Expr:
+        """h(q, v), a column: gravity, Coriolis and centrifugal terms, springs and dampers."""
+        return self.symbolic.bias
+
+    @property
+    def forces(self) -> Expr:
+        """Q(q, v, u), a column: efforts of joints, and all that inputs drive."""
+        return self.symbolic.forces
+
+    @property
+    def coriolis_matrix(self) -> Expr:
+        """C(q, v) of the bodies: C v is what of h is quadratic in v, and Ṁ - 2C is skew."""
+        return self.symbolic.coriolis_matrix
+
+    @property
+    def gravity(self) -> Expr:
+        """g(q), a column: what of h the weight makes, N^T ∂V/∂q."""
+        return self.symbolic.gravity
+
+    @property
+    def kinetic_energy(self) -> Expr:
+        """½ v^T M v of the bodies, and what prescribed motions add."""
+        return self.symbolic.kinetic_energy
+
+    @property
+    def potential_energy(self) -> Expr:
+        """The potential energy of weight and springs."""
+        return self.symbolic.potential_energy
+
+    @property
+    def coordinate_rates(self) -> Expr:
+        """q̇ = N(q) v, a column."""
+        return self.symbolic.coordinate_rates
+
+    @property
+    def constraints(self) -> Expr:
+        """φ(q), a column: zero where all loops are closed."""
+        return self.symbolic.constraints
+
+    @property
+    def constraint_jacobian(self) -> Expr:
+        """J(q), constraints x velocities."""
+        return self.symbolic.constraint_jacobian
+
+    @property
+    def constraint_bias(self) -> Expr:
+        """γ of J v̇ = γ, a column."""
+        return self.symbolic.constraint_bias
+
+    @property
+    def multipliers(self) -> Expr:
+        """λ, a column of symbols."""
+        return self.symbolic.multipliers
+
+    def reaction(self, joint: str) -> tuple[Expr, Expr]:
+        """Force and torque that a joint or constraint exerts on its head, about the head's origin.
+
+        Resolved in the axes of the head unless the model says otherwise. Accelerations stand in it as symbols
+        ``a_name``, multipliers as λ; put in those of a motion to get numbers.
+
+        Raises:
+            ModelError: there is no such joint or constraint.
+        """
+        return self.symbolic.reaction(joint)
+
+    def equations(self) -> Equations:
+        """The equations of motion, a `sympy.Eq` for each velocity; then those of constraints.
+
+        They are a list, which notebooks show line by line.
+        """
+        return self.symbolic.equations()
+
+    def linearise(self, at: Mapping[Any, Any] | None = None) -> StateSpace:
+        """A, B, C, D for small deviations from an equilibrium or a steady motion, in letters.
+
+        The states are q and v; where loops close or wheels roll, the independent changes of position and
+        velocity that the emitted ``linearize`` speaks of. `linearize` is the same function.
+
+        Args:
+            at: values of coordinates, velocities, inputs and unknowns of algebraic loops: numbers, or
+                expressions of parameters and other letters. Those left out are 0, of quaternions the
+                identity.
+                Numbers that close loops for the parameters' own values alone have these put in; coordinates
+                left out are then where the loops close.
+
+        Raises:
+            ModelError: v̇ is not 0 there, constraints do not hold or the position is singular, the time stands
+                in the equations, or they have too many terms.
+        """
+        return self.symbolic.linearise(at)
+
+    linearize = linearise
+
+    def dynamic(self, expression: Expr) -> Expr:
+        """An expression or matrix with `dynamicsymbols` of `sympy.physics.mechanics` for the state.
+
+        Coordinates become functions of time, their rates and accelerations derivatives of these; other
+        velocities and inputs become functions of their own names. `static` goes back.
+        """
+        from linegraph.symbolic.dynamicsymbols import to_dynamic
+
+        return to_dynamic(self.symbolic, expression)
+
+    def static(self, expression: Expr) -> Expr:
+        """An expression or matrix of `dynamicsymbols` with the symbols of the derivation."""
+        from linegraph.symbolic.dynamicsymbols import to_static
+
+        return to_static(self.symbolic, expression)
+
+    # -- identification
+
+    def base_parameters(self) -> BaseParameters:
+        """What of masses, moments, friction and rotor inertias motion can tell apart.
+
+        Each is a sum of standard parameters, with factors in closed form of the model's geometry.
+
+        Raises:
+            ModelError: nothing moves, or a relation of coupled or prescribed motions has no closed form.
+        """
+        from linegraph.identification.search import base_parameters
+
+        return base_parameters(self._derivation)
+
+    # -- numbers
+
+    def function(self, what: Any = "equations", frames: Iterable[str] = ()) -> Function:
+        """A fast function of one state or many, from the Python that `emit` writes.
+
+        Args:
+            what: the name of an emitted function (``mass_matrix``, ``bias``, ``rhs``, ...), or
+                a sympy expression or matrix of this derivation's symbols.
+            frames: bodies, or frames of bodies as ``body.frame``, whose functions may be asked for, such as
+                ``frame_hand_pose``, or all of them by ``kinematics``.
+
+        Returns:
+            A function of what the emitted one takes without parameters: ``f(q)``, ``f(q, v)``, ...
+            Parameters have the model's own values, or those given by ``parameters={"m": 2.0}``.
+
+        Raises:
+            ModelError: there is no such function, or a symbol is not of this derivation.
+        """
+        from linegraph.notebook.functions import function
+
+        return function(self._derivation, what, frames)
+
+    # -- looks
+
+    def sketch(self, hold: Mapping[str, float] | None = None) -> Scene:
+        """The mechanism, drawn where its loops are closed.
+
+        Args:
+            hold: coordinates that keep the values given, by name.
+
+        Raises:
+            ModelError: there is nothing to draw, a parameter has no value, or no such position.
+        """
+        from linegraph.drawing.mechanism import mechanism_scene
+
+        return mechanism_scene(self._derivation, hold=hold)
+
+    def _repr_html_(self) -> str:
+        from linegraph.notebook.displays import of_derivation
+
+        return of_derivation(self._derivation)

@@ -1,0 +1,308 @@
+"""Chords: what a tree leaves out comes back as constraints, by the circuit equations.
+
+The circuit that a chord closes says how its ends move against each other; projected on the chord's reaction
+directions, where its across variable is known and its through variable is not, that is a constraint, and
+the through variable its multiplier:
+
+    φ(q, t) = 0        J v = b        J v̇ = γ        M v̇ + h = Q + J^T λ
+
+One formula tells all of it: a *row* is a unit force and torque (f, m) between tail and head. By
+orthogonality its product with the relative motion is the constraint, c = f . u + m . w - b, its projection on
+the tree's velocities is the row of J, and the derivative of c at v̇ = 0 is -γ.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from linegraph.algebra.jets import Jet, Jets, lifted
+from linegraph.algebra.protocol import set_label
+from linegraph.components.constraints.base import Constraint, Instant, Pose, Prescribed, Row
+from linegraph.components.joints import Free
+from linegraph.components.joints.base import TORQUES
+from linegraph.components.parameters import resolver
+from linegraph.dynamics.reaction_rows import rows_of, where
+from linegraph.errors import ModelError
+from linegraph.ir.program import Quantity
+from linegraph.kinematics.ground_frames import (
+    Frame,
+    Pair,
+    along_velocities,
+    frames,
+    relative_motion,
+    seated,
+    seen,
+)
+from linegraph.spatial.vector import (
+    ZERO,
+    Matrix,
+    Vector,
+    add,
+    cross,
+    dot,
+    scale,
+    subtract,
+    times,
+    transpose,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from linegraph.algebra.protocol import Algebra
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.components.joints import Joint
+    from linegraph.dynamics.orthogonality import Arm
+    from linegraph.kinematics.links import Closure, KinematicTree
+
+
+@dataclass(frozen=True)
+class Equation:
+    """One constraint, before a state is known.
+
+    Attributes:
+        multiplier: its multiplier.
+        component: the chord's name.
+        place: which of the chord's rows it is.
+        holonomic: whether it has an equation of position.
+    """
+
+    multiplier: Quantity
+    component: str
+    place: int
+    holonomic: bool
+
+
+def equations(tree: KinematicTree) -> list[Equation]:
+    """All constraints: first those with an equation of position, each in declared order."""
+    found = [
+        Equation(quantity, closure.component.name, k, holonomic)
+        for closure in tree.closures
+        for k, (quantity, holonomic) in enumerate(_quantities(closure))
+    ]
+    found += [Equation(r.equation(), r.name, 0, False) for r in tree.relations]
+    return [e for e in found if e.holonomic] + [e for e in found if not e.holonomic]
+
+
+class Chords:
+    """The constraints of a tree at a state, over any algebra.
+
+    Args:
+        tree: what was chosen.
+        algebra: where to calculate.
+        crossed: the tree's joints at the state.
+        parameters: their scalars.
+        relations: the coefficients a, the right-hand side b and γ of every relation.
+    """
+
+    def __init__(
+        self,
+        tree: KinematicTree,
+        algebra: Algebra,
+        crossed: Sequence[Arm],
+        parameters: Mapping[str, Scalar],
+        relations: Sequence[tuple[Sequence[Scalar], Scalar, Scalar]] = (),
+    ) -> None:
+        """Nothing is calculated before it is asked for."""
+        self._tree = tree
+        self._algebra = algebra
+        self._crossed = crossed
+        self._parameters = parameters
+        self._ends: dict[str, tuple[Frame, Frame]] = {}
+        self._relations = dict(
+            zip((r.name for r in tree.relations), relations, strict=bool(relations))
+        )
+
+    @cached_property
+    def frames(self) -> list[Frame]:
+        """The links in ground axes, accelerations at v̇ = 0."""
+        return frames(self._tree, self._algebra, self._crossed)
+
+    def ends(self, name: str) -> tuple[Frame, Frame]:
+        """Tail and head of a joint or constraint, in aligned axes."""
+        if name not in self._ends:
+            end = self._tree.ends[name]
+            self._ends[name] = (seated(self.frames, end.tail), seated(self.frames, end.head))
+        return self._ends[name]
+
+    def seen(self, name: str) -> tuple[Matrix, Vector]:
+        """Head from tail of a joint: rotation, and displacement in the tail's axes."""
+        return seen(*self.ends(name))
+
+    @cached_property
+    def rows(self) -> dict[str, tuple[Row, ...]]:
+        """The rows of each chord."""
+        found = {}
+        for closure in self._tree.closures:
+            set_label(self._algebra, f"chord {closure.component.name}")
+            tail, head = (Pose(f.rotation, f.origin) for f in self.ends(closure.component.name))
+            drive = [None if x is None else Prescribed(x.x, x.dx) for x in closure.drive]
+            resolve = resolver(self._algebra, self._parameters)
+            at = Instant(self._algebra, resolve, tail, head, drive)
+            found[closure.component.name] = rows_of(closure, at)
+        return found
+
+    def position(self) -> list[Scalar]:
+        """φ(q, t), one for each constraint that has one."""
+        return [self.rows[e.component][e.place].position for e in self._equations if e.holonomic]
+
+    def jacobian(self) -> list[list[Scalar]]:
+        """J, constraints x velocities."""
+        size = len(self._tree.velocities)
+        closures = {closure.component.name: closure for closure in self._tree.closures}
+        found = []
+        for equation in self._equations:
+            row: list[Scalar] = [0] * size
+            if equation.component in self._relations:
+                row = list(self._relations[equation.component][0])
+            else:
+                set_label(
+                    self._algebra, f"chord {equation.component}, its direction {equation.place + 1}"
+                )
+                closure = closures[equation.component]
+                pair = self._pair(closure, self.rows[equation.component][equation.place])
+                for freedom, entry in self.along(pair):
+                    row[freedom.index] = row[freedom.index] + entry
+            found.append(row)
+        return found
+
+    def along(self, pair: Pair) -> Any:
+        """What a force and a torque between two links do along the velocities."""
+        return along_velocities(self._tree, self._crossed, self.frames, pair)
+
+    def rates(self, v: Sequence[Scalar]) -> list[Scalar]:
+        """J v - b, from the motion of the ends itself, which also says what is prescribed."""
+        found = []
+        for equation in self._equations:
+            if equation.component in self._relations:
+                row, right, _ = self._relations[equation.component]
+                products = (entry * x for entry, x in zip(row, v, strict=True))
+                found.append(sum(products, start=-right))
+                continue
+            u, w = relative_motion(*self.ends(equation.component))
+            row_of = self.rows[equation.component][equation.place]
+            found.append(dot(row_of.force, u) + dot(row_of.torque, w) - row_of.rate)
+        return found
+
+    def bias(self) -> list[Scalar]:
+        """γ of J v̇ = γ."""
+        known: dict[str, list[Scalar]] = {name: [r[2]] for name, r in self._relations.items()}
+        for closure in self._tree.closures:
+            name = closure.component.name
+            set_label(self._algebra, f"chord {name}, accelerations")
+            known[name] = self._derived(closure, *self.ends(name))
+        return [known[e.component][e.place] for e in self._equations]
+
+    def effort(self, closure: Closure, efforts: Sequence[Scalar]) -> Pair:
+        """The force and torque on its head of efforts along the velocities of a joint that is a chord."""
+        joint: Any = closure.component
+        tail, head = self.ends(joint.name)
+        force = torque = ZERO
+        for effort, (m, f) in zip(efforts, _duals(self._algebra, joint, tail, head), strict=True):
+            force, torque = add(force, scale(effort, f)), add(torque, scale(effort, m))
+        return Pair(force, torque, head.origin, closure.head.link, closure.tail.link)
+
+    def coordinates(self, closure: Closure) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
+        """The coordinates and velocities of a joint that is a chord."""
+        joint: Any = closure.component
+        tail, head = self.ends(joint.name)
+        u, w = relative_motion(tail, head)
+        duals = _duals(self._algebra, joint, tail, head)
+        rates = tuple(dot(m, w) + dot(f, u) for m, f in duals)
+        return joint.measured(self._algebra, *seen(tail, head)), rates
+
+    def named(self, closure: Closure) -> dict[str, Scalar]:
+        """What laws may name of a joint that is a chord: its coordinates x and their rates ``der(x)``.
+
+        Of a quaternion there is no formula; the position beside it is the displacement of the ends.
+        """
+        joint: Any = closure.component
+        tail, head = self.ends(joint.name)
+        try:
+            at, rates = self.coordinates(closure)
+            changes = joint.rates(self._algebra, at, rates)
+        except ModelError:
+            if not isinstance(joint, Free):
+                return {}
+            _, at = seen(tail, head)
+            u, _ = relative_motion(tail, head)
+            changes = times(transpose(tail.rotation), u)
+        names = [quantity.name for quantity in joint.positions()[: len(at)]]
+        found = dict(zip(names, at, strict=True))
+        return found | {f"der({x})": dx for x, dx in zip(names, changes, strict=True)}
+
+    @cached_property
+    def _equations(self) -> list[Equation]:
+        return equations(self._tree)
+
+    def _pair(self, closure: Closure, row: Row) -> Pair:
+        origin = self.ends(closure.component.name)[1].origin
+        return Pair(row.force, row.torque, origin, closure.head.link, closure.tail.link)
+
+    def _derived(self, closure: Closure, tail: Frame, head: Frame) -> list[Scalar]:
+        """-d/dt (f . u + m . w - b) at v̇ = 0, the row's own derivative by calculating with jets."""
+        jets = Jets(self._algebra)
+        base = resolver(self._algebra, self._parameters)
+        drive = [None if x is None else Prescribed(x, Jet(x.dx, x.ddx, 0)) for x in closure.drive]
+        at = Instant(jets, lambda x: lifted(base(x)), _in_motion(tail), _in_motion(head), drive)
+        moving = rows_of(closure, at)
+        u, w = relative_motion(tail, head)
+        line, velocity = subtract(head.origin, tail.origin), subtract(head.linear, tail.linear)
+        bent = add(cross(tail.spin, line), cross(tail.angular, velocity))
+        du = subtract(subtract(head.pull, tail.pull), bent)
+        dw = subtract(head.spin, tail.spin)
+        found = []
+        for row in moving:
+            (f, df), (m, dm) = _split(row.force), _split(row.torque)
+            change = dot(df, u) + dot(f, du) + (dot(dm, w) + dot(m, dw))
+            found.append(lifted(row.rate).dx - change)
+        return found
+
+
+def _quantities(closure: Closure) -> list[tuple[Quantity, bool]]:
+    """The multipliers of a chord, and whether each belongs to an equation of position."""
+    component = closure.component
+    if isinstance(component, Constraint):
+        return list(component.equations())
+    found, counts = [], {"f": 0, "t": 0}
+    for restriction in closure.restrictions:
+        turning = isinstance(restriction, TORQUES)
+        letter = "t" if turning else "f"
+        counts[letter] += 1
+        name = f"{component.name}_{letter}{counts[letter]}"
+        what, unit = ("torque", "N*m") if turning else ("force", "N")
+        about = (
+            f"reaction {what} of joint {component.name} on its head{where(restriction, component)}"
+        )
+        found.append((Quantity(name, unit, about), True))
+    for given, velocity in zip(closure.drive, component.velocities(), strict=False):
+        if given is not None:
+            unit = {"rad/s": "N*m", "m/s": "N"}[velocity.unit]
+            quantity = Quantity(f"{velocity.name}_drive", unit, f"drives {velocity.name}")
+            found.append((quantity, True))
+    return found
+
+
+def _duals(algebra: Algebra, joint: Joint, tail: Frame, head: Frame) -> list[tuple[Vector, Vector]]:
+    """A joint's unit efforts in ground axes: (torque, force)."""
+    duals = joint.duals(algebra, *seen(tail, head))
+    return [(times(head.rotation, m), times(head.rotation, f)) for m, f in duals]
+
+
+def _in_motion(frame: Frame) -> Pose:
+    """A frame's pose as jets: axes that turn and an origin that moves; second derivatives are not needed."""
+    columns = [_jets(column, cross(frame.angular, column)) for column in transpose(frame.rotation)]
+    x, y, z = columns
+    return Pose(transpose((x, y, z)), _jets(frame.origin, frame.linear))
+
+
+def _jets(a: Vector, da: Vector) -> Vector:
+    return (Jet(a[0], da[0], 0), Jet(a[1], da[1], 0), Jet(a[2], da[2], 0))
+
+
+def _split(a: Vector) -> tuple[Vector, Vector]:
+    """A vector of jets as values and rates."""
+    x, y, z = (lifted(c) for c in a)
+    return (x.x, y.x, z.x), (x.dx, y.dx, z.dx)

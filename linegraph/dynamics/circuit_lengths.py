@@ -1,0 +1,186 @@
+"""Sizes that make constraints comparable: the lengths of the circuits that chords close.
+
+A row of J is a unit force or a unit torque. Along a rotational velocity a unit force has its lever arm as
+entry, along a translational one a cosine; a unit torque has a cosine along a rotational velocity. Divided by
+a length L of the circuit for each force, and multiplied by L for each translation, all entries are pure
+numbers of size 1 at most, whatever the units and however large the mechanism:
+
+    J_ij size(v_j) / size(phi_i)        size = L (m) or 1 (rad)
+
+L is the sum of the arms between the joints of a circuit, each measured in the axes of its link, so that it
+does not depend on the position. Circuits that share velocities share the largest of their lengths.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from linegraph.components.constraints.base import Constraint
+from linegraph.components.parameters import resolver
+from linegraph.spatial.vector import Vector, subtract
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from linegraph.algebra.protocol import Algebra
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.components.constraints.base import Resolve
+    from linegraph.dynamics.chords import Equation
+    from linegraph.ir.program import Quantity
+    from linegraph.kinematics.links import Closure, KinematicTree, Link
+
+SHORT = 1e-6
+"""Arms that are a smaller part than this of what the bodies measure are rounding of joints in one place."""
+
+
+class Sizes(NamedTuple):
+    """What constraints and velocities are measured by.
+
+    Attributes:
+        constraints: for each its length (m) or 1 (rad); 0 for a relation, known by its coefficients alone.
+        velocities: for each a length (m) or 1.
+    """
+
+    constraints: list[Scalar]
+    velocities: list[Scalar]
+
+
+class Given(NamedTuple):
+    """A tree over an algebra, with the scalars of its parameters."""
+
+    tree: KinematicTree
+    algebra: Algebra
+    parameters: Mapping[str, Scalar]
+
+
+class _Circuit(NamedTuple):
+    """What a chord closes.
+
+    Attributes:
+        links: those whose joints lie in it.
+        arms: from joint to joint, each in the axes of one link.
+        own: lengths of the chord itself.
+    """
+
+    links: frozenset[int]
+    arms: list[Vector]
+    own: list[Scalar]
+
+
+def sizes(given: Given, equations: Sequence[Equation], numbers: Given | None = None) -> Sizes:
+    """The sizes of all constraints and velocities.
+
+    Args:
+        given: the links.
+        equations: the constraints.
+        numbers: the same in numbers, which tell whether arms are rounding; `given` itself if left out.
+    """
+    numbers = numbers or given
+    tree, sample = given.tree, numbers.tree
+    circuits, known = _circuits(given), _circuits(numbers)
+    of_chord: dict[str, Scalar] = {}
+    of_velocity: dict[int, Scalar] = {}
+    for group in _groups(tree, circuits):
+        links = {link for k in group for link in circuits[k].links}
+        bodies = _extent(sample.links[k] for k in links)
+        length: Scalar = bodies or 1.0
+        if _longest(numbers.algebra, [known[k] for k in group]) > SHORT * bodies:
+            length = _longest(given.algebra, [circuits[k] for k in group])
+        of_chord.update((tree.closures[k].component.name, length) for k in group)
+        of_velocity.update((f.index, length) for k in links for f in tree.links[k].velocities)
+    rest = _extent(sample.links) or 1.0
+    return Sizes(
+        [_size_of(e.multiplier, of_chord.get(e.component, 0)) for e in equations],
+        [
+            of_velocity.get(k, rest) if quantity.unit == "m/s" else 1
+            for k, quantity in enumerate(tree.velocities)
+        ],
+    )
+
+
+def of_rows(J: Any, found: Sizes) -> Any:
+    """By what each row of J in numbers is to be divided: where no size is known, by its own largest entry."""
+    import numpy as np
+
+    known = np.array(found.constraints, float)
+    own = np.abs(J * np.array(found.velocities, float)).max(axis=1, initial=0.0)
+    return np.where(known > 0, known, np.where(own > 0, own, 1.0))
+
+
+def pure(J: Any, found: Sizes) -> Any:
+    """J in pure numbers, in which a unit direction has entries of size 1 at most."""
+    import numpy as np
+
+    return J * np.array(found.velocities, float) / of_rows(J, found)[:, None]
+
+
+def _size_of(multiplier: Quantity, length: Scalar) -> Scalar:
+    """What a constraint is measured by: that of a force by a length."""
+    sizes_of: dict[str, Scalar] = {"N": length, "N*m": 1}
+    return sizes_of.get(multiplier.unit, 0)
+
+
+def _circuits(given: Given) -> list[_Circuit]:
+    resolve = resolver(given.algebra, given.parameters)
+    return [_circuit(given.tree, closure, resolve) for closure in given.tree.closures]
+
+
+def _circuit(tree: KinematicTree, closure: Closure, resolve: Resolve) -> _Circuit:
+    """The links and arms of the circuit that a chord closes."""
+    ways = []
+    for seat in (closure.tail, closure.head):
+        way = [(seat.link, seat.at)]
+        while way[-1][0] >= 0:
+            link = tree.links[way[-1][0]]
+            way.append((link.parent, link.at))
+        ways.append(way)
+    one, other = (dict(way) for way in ways)
+    meeting = next(link for link, _ in ways[0] if link in other)
+    outer = [(k, at) for way in ways for k, at in way if not (k in one and k in other)]
+    arms = [*(at for _, at in outer), subtract(one[meeting], other[meeting])]
+    links = {k for k, _ in outer}
+    if tree.levelled:
+        links |= {k for k in (*one, *other) if k >= 0}
+    own: list[Scalar] = []
+    if isinstance(closure.component, Constraint):
+        own += [jet.x for jet in closure.drive if jet is not None and jet.dx == 0]
+        own += [resolve(x) for x in closure.component.lengths()]
+    return _Circuit(frozenset(links), arms, own)
+
+
+def _groups(tree: KinematicTree, circuits: Sequence[_Circuit]) -> list[list[int]]:
+    """Circuits that share velocities, directly or by others between them."""
+    groups: list[tuple[set[int], list[int]]] = []
+    for k, circuit in enumerate(circuits):
+        shared = {f.index for link in circuit.links for f in tree.links[link].velocities}
+        members = [k]
+        apart = []
+        for velocities, others in groups:
+            if velocities & shared:
+                shared, members = shared | velocities, [*others, *members]
+            else:
+                apart.append((velocities, others))
+        groups = [*apart, (shared, members)]
+    return [members for _, members in groups]
+
+
+def _longest(algebra: Algebra, circuits: Sequence[_Circuit]) -> Scalar:
+    """The greatest length of some circuits."""
+    longest: Scalar = 0
+    for circuit in circuits:
+        parts = [*(x for arm in circuit.arms for x in arm), *circuit.own]
+        length = sum((algebra.function("abs", x) for x in parts), start=0)
+        longest = length if longest == 0 else algebra.function("max", longest, length)
+    return longest
+
+
+def _extent(links: Iterable[Link]) -> float:
+    """How far the mass of links in numbers reaches from their joints: the greatest of all."""
+    reaches = [0.0]
+    for link in links:
+        mass, first, inertia = link.moments.mass, link.moments.first, link.moments.inertia
+        if mass > 0:
+            square = (abs(inertia[0]) + abs(inertia[3]) + abs(inertia[5])) / mass
+            reaches.append(math.hypot(*first) / mass + math.sqrt(square))
+    return max(reaches)

@@ -1,0 +1,141 @@
+"""The bias h beside the mass matrix: from composites, which M needs anyway.
+
+The accelerations of a link's points at v̇ = 0 are a field x -> a + A x. What a joint adds to the field that
+its near link has, it adds for all that it carries, so its inertia force is that of one composite:
+
+    ΔA = [σ x][w x] + [β x]        Δa = σ x u + β'
+
+with w, u the joint's relative velocities, σ the sum of the angular velocities on its two sides and β, β' the
+rest of its relative acceleration. Of a hinge ΔA has three entries: points on its axis move with both links.
+A joint's h is then what the near link's field does to its composite, and what it and the joints beyond add.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from linegraph.algebra.protocol import set_label
+from linegraph.components.joints import Moments
+from linegraph.dynamics.mass_matrix import composites
+from linegraph.dynamics.orthogonality import applied_to, projection
+from linegraph.kinematics.accelerations import (
+    Crossing,
+    Spin,
+    accelerated,
+    crossed_with,
+    d_alembert,
+    resting,
+    seen_near,
+    spins,
+    together,
+)
+from linegraph.spatial import vector
+from linegraph.spatial.rotation import square
+from linegraph.spatial.vector import add, cross
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from linegraph.algebra.protocol import Algebra
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.components.joints import Motion
+    from linegraph.dynamics.applied_forces import Applied
+    from linegraph.dynamics.orthogonality import Arm
+    from linegraph.kinematics.accelerations import Wrench
+    from linegraph.kinematics.links import KinematicTree
+    from linegraph.spatial.rotation import Inertia, Rotation
+    from linegraph.spatial.vector import Matrix, Vector
+
+
+def bias_beside_mass(
+    tree: KinematicTree, algebra: Algebra, crossed: Sequence[Arm], acting: Applied
+) -> list[Scalar]:
+    """h(q, v), less what `acting` does; the composites are those of `mass_matrix`."""
+    carried = composites(tree, algebra, list(crossed))
+    motions = spins(tree, algebra, crossed)
+    total: list[Scalar] = [-effort for effort in acting.efforts]
+    beyond = [(vector.negate(force), vector.negate(torque)) for force, torque in acting.wrenches]
+    for i in reversed(range(len(tree.links))):
+        link, arm = tree.links[i], crossed[i]
+        set_label(algebra, f"forces, {link.caption}")
+        near = motions[link.parent] if link.parent >= 0 else resting(tree)
+        here = _at_joint(arm, near, carried[i])
+        whole = d_alembert(here.carried, here.field)
+        own = _added(here.carried, crossed_with(arm, here.motion, here.field.velocity))
+        for a, freedom in enumerate(link.velocities):
+            entry = projection(here.motion, a, *together(whole, own))
+            entry = entry + projection(arm.motion, a, *beyond[i])
+            total[freedom.index] = total[freedom.index] + freedom.ratio * entry
+        if link.parent >= 0:
+            force, torque = here.passed_on(beyond[i], own)
+            passed = (force, add(torque, cross(arm.at, force)))
+            beyond[link.parent] = together(beyond[link.parent], passed)
+    return total
+
+
+class _Joint(NamedTuple):
+    """What is known at a joint, in one set of axes and about its far link's origin.
+
+    Attributes:
+        motion: the joint's.
+        carried: the composite beyond it.
+        field: how the near link's points move there.
+        rotation: far axes to near axes.
+        near: whether the axes are the near link's; else they are the far link's.
+    """
+
+    motion: Motion
+    carried: Moments
+    field: Spin
+    rotation: Rotation
+    near: bool
+
+    def passed_on(self, far: Wrench, own: Wrench) -> Wrench:
+        """The sum of a wrench in far axes and one in the joint's, in near axes."""
+        out = self.rotation.out
+        if self.near:
+            return together((out(far[0]), out(far[1])), own)
+        force, torque = together(far, own)
+        return out(force), out(torque)
+
+
+def _at_joint(arm: Arm, near: Spin, composite: Moments) -> _Joint:
+    """A joint in near axes where its directions are constant there: a link at the end needs no others."""
+    pull = add(near.linear, accelerated(near, arm.at))
+    rotation, motion = arm.rotation, arm.motion
+    seen = seen_near(arm)
+    if all(isinstance(x, (int, float)) for s in (*seen.angular, *seen.linear) for x in s):
+        mass, first, second, _ = composite
+        turned = Moments(mass, rotation.out(first), rotation.congruence(second))
+        return _Joint(seen, turned, near._replace(linear=pull), rotation, near=True)
+    into = rotation.into
+    field = Spin(into(near.velocity), into(near.angular), into(pull))
+    return _Joint(motion, composite, field, rotation, near=False)
+
+
+def _added(composite: Moments, here: Crossing) -> Wrench:
+    """Force and torque about a link's origin of what its joint adds to the accelerations beyond it."""
+    mass, first, second, _ = composite
+    w, sums = here.turning, add(here.before, here.velocity)
+    field = _turning(w, sums)
+    force = add(vector.scale(mass, here.linear), cross(here.angular, first))
+    torque = add(applied_to(composite.inertia, here.angular), cross(first, here.linear))
+    about_one_axis = sum(x != 0 for x in w) == 1
+    gyroscopic = _axial(field, second) if about_one_axis else cross(applied_to(second, sums), w)
+    return add(force, vector.times(field, first)), add(torque, gyroscopic)
+
+
+def _turning(w: Vector, sums: Vector) -> Matrix:
+    """``[σ x][w x] = w σ^T - (w . σ) 1``."""
+    x, y, z = (w[k] * sums[k] for k in range(3))
+    return (
+        (-(y + z), w[0] * sums[1], w[0] * sums[2]),
+        (w[1] * sums[0], -(x + z), w[1] * sums[2]),
+        (w[2] * sums[0], w[2] * sums[1], -(x + y)),
+    )
+
+
+def _axial(field: Matrix, second: Inertia) -> Vector:
+    """The torque ``∫ r x (A r) dm``: the axial vector of A S."""
+    rows = [vector.times(square(second), row) for row in field]
+    return (rows[2][1] - rows[1][2], rows[0][2] - rows[2][0], rows[1][0] - rows[0][1])

@@ -1,0 +1,291 @@
+"""Derivatives of inverse dynamics from composites: what a joint changes, it changes for all that it carries.
+
+If one freedom of a joint, turning s and shift k in far axes, moves a little, its far side moves on as one:
+seen from there the near side moves otherwise. With w', e', a' the near side's angular velocity and
+acceleration and the acceleration of its point at the joint's origin, w and u the joint's relative velocities,
+
+    by q    dw = w' x s    η = e' x s - dw x w'      α = a' x s + e' x k + w' x (w' x k) + 2 dw x u
+    by v    dw = s         η = 2 w' x s + w x s      α = (2 w' + w) x k + s x u
+
+and each point r of what is carried, of velocity V, gets the acceleration α + η x r + 2 dw x V. The force that
+takes is one of the composite, linear in (α, η, dw): its moments m, b, J, its momentum P and the moments of
+velocity G = ∫ V r^T dm,
+
+    f = m α + η x b + 2 dw x P        n = b x α + J η + 2 (tr G - G) dw
+
+Joints further in feel it, and that all forces turn with s and shift with k; joints further out are felt by
+the transpose of the same, carried inward as the columns of M are. Velocities V may leave out a common one:
+they are those seen from the root's origin.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from linegraph.algebra.protocol import set_label
+from linegraph.dynamics.mass_matrix import composites
+from linegraph.dynamics.orthogonality import applied_to, gathered, projection
+from linegraph.ir.dag import Node
+from linegraph.kinematics.accelerations import (
+    Spin,
+    accelerated,
+    inertia_forces,
+    resting,
+    spins,
+    together,
+)
+from linegraph.spatial import vector
+from linegraph.spatial.rotation import square
+from linegraph.spatial.vector import ZERO, add, cross, dot, scale, skew, subtract
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.components.joints import Moments
+    from linegraph.dynamics.orthogonality import Arm
+    from linegraph.ir.dag import Dag
+    from linegraph.kinematics.accelerations import Wrench
+    from linegraph.kinematics.links import KinematicTree
+    from linegraph.kinematics.state_layout import Freedom
+    from linegraph.spatial.vector import Matrix, Vector
+
+Rows = list[list["Scalar"]]
+
+
+class Slopes(NamedTuple):
+    """∂τ/∂d, ∂τ/∂v and ∂τ/∂a = M of mechanics, n x n."""
+
+    by_change: Rows
+    by_velocity: Rows
+    by_acceleration: Rows
+
+
+def has_slopes(tree: KinematicTree, crossed: Iterable[Arm]) -> bool:
+    """Whether every freedom is a turn and a shift that do not change in far axes."""
+    if tree.levelled:
+        return False
+    for arm in crossed:
+        motion = arm.motion
+        biases = (*motion.angular_bias, *motion.linear_bias)
+        entries = (x for part in (*motion.angular, *motion.linear) for x in part)
+        if any(x != 0 for x in biases) or not all(map(_constant, entries)):
+            return False
+    return True
+
+
+def _constant(x: Scalar) -> bool:
+    return not isinstance(x, Node) or (x.op == "symbol" and x.a == "p")
+
+
+def slopes(tree: KinematicTree, dag: Dag, crossed: Sequence[Arm], a: Sequence[Scalar]) -> Slopes:
+    """The derivatives of ``M a + h`` without what acts, for a tree of which `has_slopes` is true."""
+    size = len(tree.velocities)
+    found = Slopes(*([[0] * size for _ in range(size)] for _ in range(3)))
+    carried = composites(tree, dag, list(crossed))
+    momenta = _momenta(tree, dag, crossed)
+    motions = spins(tree, dag, crossed, a)
+    forces = _transmitted(tree, dag, crossed, a)
+    steps: list[list[_Step]] = []
+    for i, (link, arm) in enumerate(zip(tree.links, crossed, strict=True)):
+        set_label(dag, f"derivatives, {link.caption}")
+        near = motions[link.parent] if link.parent >= 0 else resting(tree)
+        near = _seen(arm, near)
+        here = [_step(arm, k, near, momenta[i].velocity) for k in range(len(link.velocities))]
+        steps.append(here)
+        _inward(tree, crossed, i, here, (carried[i], momenta[i], forces[i]), found)
+        _outward(tree, crossed, i, steps, (carried[i], momenta[i]), found)
+    return found
+
+
+class _Momentum(NamedTuple):
+    """Twice the velocities of what a joint carries: of its origin, and the moments ∫ V dm and ∫ V r^T dm."""
+
+    velocity: Vector
+    first: Vector
+    second: Matrix
+
+
+class _Step(NamedTuple):
+    """What one freedom changes: turning, shift, and (dw, η, α) by q and by v."""
+
+    s: Vector
+    k: Vector
+    by_change: tuple[Vector, Vector, Vector]
+    by_velocity: tuple[Vector, Vector, Vector]
+
+
+def _seen(arm: Arm, near: Spin) -> Spin:
+    """How the near link moves at the joint's origin, in far axes."""
+    into = arm.rotation.into
+    pull = add(near.linear, accelerated(near, arm.at))
+    return Spin(into(near.velocity), into(near.angular), into(pull))
+
+
+def _step(arm: Arm, k: int, near: Spin, velocity: Vector) -> _Step:
+    s, shift = arm.motion.angular[k], arm.motion.linear[k]
+    w = vector.combine(arm.rates, arm.motion.angular)
+    u = vector.combine(arm.rates, arm.motion.linear)
+    turn = cross(near.velocity, s)
+    # velocities are seen from the root: less 2 dw x that of the origin
+    moving = cross(turn, subtract(scale(2, u), velocity))
+    change = (
+        turn,
+        subtract(cross(near.angular, s), cross(turn, near.velocity)),
+        add(add(cross(near.linear, s), accelerated(near, shift)), moving),
+    )
+    twice = scale(2, near.velocity)
+    rate = (
+        s,
+        cross(add(twice, w), s),
+        add(cross(add(twice, w), shift), cross(s, subtract(u, velocity))),
+    )
+    return _Step(s, shift, change, rate)
+
+
+def _momenta(tree: KinematicTree, dag: Dag, crossed: Sequence[Arm]) -> list[_Momentum]:
+    """Of all that each joint carries, velocities seen from the origin of its root."""
+    turning = [scale(2, spin.velocity) for spin in spins(tree, dag, crossed)]
+    found: list[_Momentum] = []
+    for i, (link, arm) in enumerate(zip(tree.links, crossed, strict=True)):
+        set_label(dag, f"momentum, {link.caption}")
+        v = ZERO
+        if link.parent >= 0:
+            inner = add(found[link.parent].velocity, cross(turning[link.parent], arm.at))
+            own = scale(2, vector.combine(arm.rates, arm.motion.linear))
+            v = add(arm.rotation.into(inner), own)
+        mass, first, second, _ = arm.moments
+        # of what moves in a plane only the trace counts, to which turning adds nothing
+        tensor = square((0,) * 6 if link.in_plane else second)
+        spread = _product(skew(turning[i]), tensor)
+        moved = tuple(
+            tuple(x + v[r] * first[c] for c, x in enumerate(row)) for r, row in enumerate(spread)
+        )
+        found.append(_Momentum(v, add(scale(mass, v), cross(turning[i], first)), moved))  # type: ignore[arg-type]
+    for i in reversed(range(len(tree.links))):
+        link, arm = tree.links[i], crossed[i]
+        if link.parent < 0:
+            continue
+        set_label(dag, f"momentum carried by {link.caption}")
+        inner = arm.rotation.out(found[i].first)
+        tensor = arm.rotation.similarity(found[i].second)
+        outer = found[link.parent]
+        whole = tuple(
+            tuple(outer.second[r][c] + (tensor[r][c] + inner[r] * arm.at[c]) for c in range(3))
+            for r in range(3)
+        )
+        found[link.parent] = _Momentum(outer.velocity, add(outer.first, inner), whole)  # type: ignore[arg-type]
+    return found
+
+
+def _product(a: Matrix, b: Matrix) -> Matrix:
+    columns = vector.transpose(b)
+    x, y, z = (tuple(dot(row, column) for column in columns) for row in a)
+    return (x, y, z)
+
+
+def _transmitted(
+    tree: KinematicTree, dag: Dag, crossed: Sequence[Arm], a: Sequence[Scalar]
+) -> list[Wrench]:
+    """Force and torque in every joint."""
+    forces = inertia_forces(tree, dag, crossed, a)
+    for i in reversed(range(len(tree.links))):
+        link = tree.links[i]
+        if link.parent >= 0:
+            set_label(dag, f"forces, {link.caption}")
+            outer = forces[link.parent]
+            forces[link.parent] = together(outer, gathered(crossed[i], *forces[i]))
+    return forces
+
+
+def _response(
+    composite: Moments, momentum: _Momentum, change: tuple[Vector, Vector, Vector]
+) -> Wrench:
+    """The force and torque that a change (dw, η, α) of the near side takes."""
+    dw, angular, linear = change
+    mass, first, *_ = composite
+    force = add(scale(mass, linear), cross(angular, first))
+    force = add(force, cross(dw, momentum.first))
+    torque = add(applied_to(composite.inertia, angular), cross(first, linear))
+    return force, add(torque, vector.times(_turning(momentum), dw))
+
+
+def _turning(momentum: _Momentum) -> Matrix:
+    """``2 (tr G - G)``."""
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = momentum.second
+    return ((yy + zz, -xy, -xz), (-yx, xx + zz, -yz), (-zx, -zy, xx + yy))
+
+
+def _inward(
+    tree: KinematicTree,
+    crossed: Sequence[Arm],
+    i: int,
+    here: Sequence[_Step],
+    known: tuple[Moments, _Momentum, Wrench],
+    found: Slopes,
+) -> None:
+    """The columns of a link's freedoms: its own rows, and those of all joints further in."""
+    composite, momentum, (force, torque) = known
+    link = tree.links[i]
+    for step, freedom in zip(here, link.velocities, strict=True):
+        by_change = _response(composite, momentum, step.by_change)
+        by_velocity = _response(composite, momentum, step.by_velocity)
+        for b, own in enumerate(link.velocities):
+            for rows, wrench in ((found.by_change, by_change), (found.by_velocity, by_velocity)):
+                entry = projection(crossed[i].motion, b, *wrench)
+                _contribute(rows, own, freedom, entry)
+        turned = (cross(step.s, force), add(cross(step.s, torque), cross(step.k, force)))
+        by_change = together(by_change, turned)
+        place = i
+        while (parent := tree.links[place].parent) >= 0:
+            by_change = gathered(crossed[place], *by_change)
+            by_velocity = gathered(crossed[place], *by_velocity)
+            place = parent
+            for b, other in enumerate(tree.links[place].velocities):
+                for rows, wrench in (
+                    (found.by_change, by_change),
+                    (found.by_velocity, by_velocity),
+                ):
+                    entry = projection(crossed[place].motion, b, *wrench)
+                    _contribute(rows, other, freedom, entry)
+
+
+def _outward(
+    tree: KinematicTree,
+    crossed: Sequence[Arm],
+    i: int,
+    steps: Sequence[Sequence[_Step]],
+    known: tuple[Moments, _Momentum],
+    found: Slopes,
+) -> None:
+    """The rows of a link's freedoms in the columns of all joints further in, and M."""
+    composite, momentum = known
+    link = tree.links[i]
+    back = vector.transpose(_turning(momentum))
+    for step, freedom in zip(steps[i], link.velocities, strict=True):
+        force, torque = _response(composite, momentum, (ZERO, step.s, step.k))
+        swept = add(vector.times(back, step.s), cross(momentum.first, step.k))
+        place = i
+        for b, own in enumerate(link.velocities):
+            entry = projection(crossed[i].motion, b, force, torque)
+            _contribute(found.by_acceleration, own, freedom, entry)
+        while (parent := tree.links[place].parent) >= 0:
+            force, torque = gathered(crossed[place], force, torque)
+            swept = crossed[place].rotation.out(swept)
+            place = parent
+            for other, outer in zip(steps[place], tree.links[place].velocities, strict=True):
+                entry = dot(other.s, torque) + dot(other.k, force)
+                _contribute(found.by_acceleration, freedom, outer, entry)
+                _contribute(found.by_acceleration, outer, freedom, entry)
+                for rows, (dw, angular, linear) in (
+                    (found.by_change, other.by_change),
+                    (found.by_velocity, other.by_velocity),
+                ):
+                    entry = dot(linear, force) + dot(angular, torque) + dot(dw, swept)
+                    _contribute(rows, freedom, outer, entry)
+
+
+def _contribute(rows: Rows, row: Freedom, column: Freedom, entry: Scalar) -> None:
+    """Add a product of freedoms; coupled ones meet."""
+    value = (row.ratio * column.ratio) * entry
+    rows[row.index][column.index] = rows[row.index][column.index] + value

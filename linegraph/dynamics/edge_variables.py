@@ -1,0 +1,399 @@
+"""The inverse scheme: once v̇ and λ are known, every variable of every edge follows.
+
+Across variables follow from the circuit equations. Through variables follow from the cutset equations, body
+by body from the leaves to the root: the joint towards ground exerts what the body's motion asks for, less
+what all its other edges exert. Masses are the model's own, whatever the equations of motion regroup.
+
+In each subspace the product of through and across variables, summed over all edges, is zero. A force that
+acts beside a mass centre is a torque there: the arm is a transformer between translation and rotation, with
+a *lever* edge in rotation from ground to the mass centre, so that the sums vanish one by one.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from linegraph.algebra.protocol import set_label
+from linegraph.components.body import GROUND, MASS_CENTER
+from linegraph.components.constraints.base import Constraint
+from linegraph.components.forces import Element, Load
+from linegraph.components.parameters import resolver
+from linegraph.dynamics.applied_forces import Acting
+from linegraph.dynamics.edge_quantities import NOTHING, Edge, Wrench
+from linegraph.dynamics.orthogonality import applied_to
+from linegraph.kinematics.ground_frames import GROUND_FRAME, Frame, Pair, frames, seated
+from linegraph.kinematics.links import Seat, mass_center
+from linegraph.model.choices import GROUND_AXES, HEAD
+from linegraph.spatial.vector import (
+    ZERO,
+    Vector,
+    add,
+    cross,
+    dot,
+    negate,
+    scale,
+    subtract,
+    times,
+    transpose,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from linegraph.algebra.protocol import Algebra
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.dynamics.chords import Chords, Equation
+    from linegraph.dynamics.law_names import State
+    from linegraph.dynamics.orthogonality import Arm
+    from linegraph.kinematics.links import Closure, KinematicTree
+    from linegraph.model.builder import Model
+    from linegraph.pipeline import Derivation
+
+
+class InverseScheme:
+    """Every variable of a model at a state, over any algebra.
+
+    Args:
+        derivation: the model and its graph.
+        tree: the links, not regrouped.
+        algebra: where to calculate.
+        parameters: their scalars.
+        crossed: the tree's joints at the state.
+        chords: its constraints there.
+        state: q and v.
+        acceleration: v̇; None where only across variables are asked for.
+        multipliers: λ.
+    """
+
+    def __init__(
+        self,
+        derivation: Derivation,
+        tree: KinematicTree,
+        algebra: Algebra,
+        parameters: Mapping[str, Scalar],
+        crossed: Sequence[Arm],
+        chords: Chords,
+        state: State,
+        acceleration: Sequence[Scalar] | None = None,
+        multipliers: Sequence[tuple[Equation, Scalar]] = (),
+    ) -> None:
+        """Nothing is calculated before it is asked for."""
+        self._model: Model = derivation.model
+        self._walk = derivation.topology.walk
+        self._tree = tree
+        self._algebra = algebra
+        self._resolve = resolver(algebra, parameters)
+        self._chords = chords
+        self._state = state
+        self._multipliers = multipliers
+        self._frames = frames(tree, algebra, crossed, acceleration)
+        self._terminals = self._model.terminals()
+        self._known: dict[str, Frame] = {}
+        self._acting = Acting(
+            self._model, tree, algebra, parameters, chords, state, acceleration=acceleration
+        )
+
+    # -- where things are
+
+    def terminal(self, name: str) -> Frame:
+        """The motion of a terminal; of a mass centre too."""
+        if name not in self._known:
+            self._known[name] = self._found(name)
+        return self._known[name]
+
+    def center(self, body: str) -> Frame:
+        """The motion of a body's mass centre, in the body's axes."""
+        return self.terminal(f"{body}.{MASS_CENTER}")
+
+    def _found(self, name: str) -> Frame:
+        body, _, last = name.rpartition(".")
+        if last == MASS_CENTER and body in self._model.bodies:
+            return self._body(body).at(mass_center(self._model.bodies[body], self._resolve))
+        body, placement = self._terminals[name]
+        at = self._vector(placement.at)
+        x, y, z = (self._vector(row) for row in placement.rotation)
+        return self._body(body).at(at, (x, y, z))
+
+    def _body(self, body: str) -> Frame:
+        link, pose = self._tree.bodies[body]
+        return seated(self._frames, Seat(link, pose.at, pose.rotation))
+
+    def _vector(self, a: Vector) -> Vector:
+        return (self._resolve(a[0]), self._resolve(a[1]), self._resolve(a[2]))
+
+    # -- what acts
+
+    @cached_property
+    def joints(self) -> dict[str, Wrench]:
+        """What every joint and constraint exerts on its head, about the head's origin.
+
+        Efforts and what drives it included, elements that sit in it not: these have edges of their own.
+        """
+        found: dict[str, Wrench] = {}
+        needed = {name: self._needed(name) for name in self._model.bodies}
+        for element in self._model.elements:
+            for terminal, wrench in self._ends_of(element):
+                self._give(needed, terminal, wrench)
+        for closure in self._tree.closures:
+            name = closure.component.name
+            if name not in self._branches:
+                found[name] = self._chord(closure)
+                self._exchange(needed, closure, found[name])
+        for step in reversed(self._walk):
+            name = step.edge.name
+            if name in self._branches:
+                found[name] = self._branch(needed, self._tree.ends[name], step.forward)
+        for element in self._model.elements:
+            if isinstance(element, Element) and element.joint is not None:
+                own = self.elements[element.name].through
+                found[element.joint] = found[element.joint] + own.turned()
+        return found
+
+    @cached_property
+    def _branches(self) -> set[str]:
+        joints = {joint.name for joint in self._model.joints}
+        return {step.edge.name for step in self._walk if step.edge.component in joints} & joints
+
+    def _needed(self, body: str) -> Wrench:
+        """What a body's motion asks for, less its weight, about its mass centre."""
+        set_label(self._algebra, f"forces, body {body}")
+        return self.inertia(body).through.turned()
+
+    def _branch(self, needed: dict[str, Wrench], closure: Closure, forward: bool) -> Wrench:
+        """The cutset of a branch: what all beyond it still needs passes through it."""
+        joint: Any = closure.component
+        set_label(self._algebra, f"reaction in {joint.name}")
+        head = self.terminal(joint.between[1])
+        near, far = joint.between if forward else reversed(joint.between)
+        body, inner = self._terminals[far][0], self._terminals[near][0]
+        rest = needed[body].about(self.center(body).origin, head.origin)
+        if inner in needed:
+            needed[inner] = needed[inner] + rest.about(head.origin, self.center(inner).origin)
+        return rest if forward else rest.turned()
+
+    def _chord(self, closure: Closure) -> Wrench:
+        """Multipliers times reaction directions, and efforts."""
+        total = NOTHING
+        component = closure.component
+        for equation, multiplier in self._multipliers:
+            if equation.component == component.name:
+                row = self._chords.rows[component.name][equation.place]
+                total = total + Wrench(scale(multiplier, row.force), scale(multiplier, row.torque))
+        first = self._tree.layout.pushes.get(component.name)
+        if first is not None and not isinstance(component, Constraint):
+            given = [self._algebra.symbol("u", first + k) for k in range(component.freedoms)]
+            pair = self._chords.effort(closure, given)
+            total = total + Wrench(pair.force, pair.torque)
+        for element in self._model.elements:
+            if isinstance(element, Element) and element.joint == component.name:
+                total = total + self.elements[element.name].through
+        return total
+
+    def _exchange(self, needed: dict[str, Wrench], closure: Closure, wrench: Wrench) -> None:
+        """Let a chord act on the body at its head, and back on that at its tail."""
+        component: Any = closure.component
+        tail, head = component.between
+        origin = self.terminal(head).origin
+        for terminal, acting in ((head, wrench), (tail, wrench.turned())):
+            body = self._terminals[terminal][0]
+            if body in needed:
+                given = acting.about(origin, self.center(body).origin).turned()
+                needed[body] = needed[body] + given
+
+    def _give(self, needed: dict[str, Wrench], terminal: str, wrench: Wrench) -> None:
+        """Take what acts at a terminal off what its body needs."""
+        body = self._terminals[terminal][0]
+        if body in needed:
+            origin = self.terminal(terminal).origin
+            given = wrench.about(origin, self.center(body).origin).turned()
+            needed[body] = needed[body] + given
+
+    def _ends_of(self, element: Element | Load) -> list[tuple[str, Wrench]]:
+        """What an element between points, or a load, exerts on its terminals."""
+        if isinstance(element, Load):
+            return [(element.at, self.elements[element.name].through)]
+        if element.between is None:
+            return []
+        on_head = self.elements[element.name].through
+        tail, head = element.between
+        return [(head, on_head), (tail, on_head.turned())]
+
+    @cached_property
+    def elements(self) -> dict[str, Edge]:
+        """Every element and load as an edge."""
+        return {element.name: self._element(element) for element in self._model.elements}
+
+    def _element(self, element: Element | Load) -> Edge:
+        set_label(self._algebra, f"{element.kind} {element.name}")
+        if isinstance(element, Load):
+            frame = self.terminal(element.at)
+            return Edge(Wrench(*self._acting.load(element)), frame.linear, frame.angular)
+        if element.between is not None:
+            tail, head = (self.terminal(end) for end in element.between)
+            pull = self._acting.between(element)[1]
+            return self._edge(Wrench(negate(pull), ZERO), tail, head)
+        closure = self._tree.ends[str(element.joint)]
+        y = self._acting.in_joint(element)[1]
+        pair: Pair = self._chords.effort(closure, [-y])
+        joint: Any = closure.component
+        tail, head = (self.terminal(end) for end in joint.between)
+        return self._edge(Wrench(pair.force, pair.torque), tail, head)
+
+    def inertia(self, body: str) -> Edge:
+        """A body's inertia edge, from ground to its mass centre: d'Alembert's force and torque, weight."""
+        own = self._model.bodies[body]
+        frame = self.center(body)
+        mass = self._resolve(own.mass)
+        pull = subtract(frame.pull, self._tree.gravity)
+        inward = transpose(frame.rotation)
+        spin, omega = times(inward, frame.spin), times(inward, frame.angular)
+        tensor = self._central(body, mass)
+        torque = add(applied_to(tensor, spin), cross(omega, applied_to(tensor, omega)))
+        through = Wrench(scale(mass, pull), times(frame.rotation, torque)).turned()
+        return Edge(through, frame.linear, frame.angular)
+
+    def _central(self, body: str, mass: Scalar) -> Any:
+        """A body's inertia about its mass centre, in its axes."""
+        own = self._model.bodies[body]
+        xx, xy, xz, yy, yz, zz = (self._resolve(x) for x in own.inertia)
+        if own.first is None:
+            return (xx, xy, xz, yy, yz, zz)
+        x, y, z = mass_center(own, self._resolve)
+        return (
+            xx - mass * (y * y + z * z),
+            xy + mass * (x * y),
+            xz + mass * (x * z),
+            yy - mass * (x * x + z * z),
+            yz + mass * (y * z),
+            zz - mass * (x * x + y * y),
+        )
+
+    @staticmethod
+    def _edge(through: Wrench, tail: Frame, head: Frame) -> Edge:
+        """An edge between two moving frames."""
+        lever = negate(cross(subtract(head.origin, tail.origin), through.force))
+        return Edge(
+            through,
+            subtract(head.linear, tail.linear),
+            subtract(head.angular, tail.angular),
+            lever,
+            tail.angular,
+        )
+
+    # -- results
+
+    def reaction(self, joint: str) -> Wrench:
+        """What a joint exerts on its head, about the head's origin, in the axes the user has chosen."""
+        component: Any = self._tree.ends[joint].component
+        tail, head = component.between
+        axes = {HEAD: head, GROUND_AXES: GROUND}.get(self._model.choices.reactions, tail)
+        frame = GROUND_FRAME if axes == GROUND else self.terminal(axes)
+        inward = transpose(frame.rotation)
+        return Wrench(*(times(inward, part) for part in self.joints[joint]))
+
+    def tension(self, element: Element) -> tuple[Scalar, Scalar]:
+        """A force element's across variable, its length or coordinate, and its through variable."""
+        if element.between is None:
+            return self._acting.in_joint(element)
+        x, pull = self._acting.between(element)
+        tail, head = (self.terminal(end) for end in element.between)
+        return x, dot(pull, subtract(head.origin, tail.origin)) / x
+
+    def across(self) -> dict[str, tuple[Vector, Vector]]:
+        """Velocity and angular velocity across every edge, in ground axes."""
+        found: dict[str, tuple[Vector, Vector]] = {}
+        for body in self._model.bodies:
+            center = self.center(body)
+            found[f"{body}/inertia"] = (center.linear, center.angular)
+        for name, (tail, head) in (*self._between.items(), *self._rigid.items()):
+            first, second = self.terminal(tail), self.terminal(head)
+            linear = subtract(second.linear, first.linear)
+            # the ends of a rigid arm turn alike
+            turned = ZERO if name in self._rigid else subtract(second.angular, first.angular)
+            found[name] = (linear, turned)
+        return found
+
+    @cached_property
+    def _rigid(self) -> dict[str, tuple[str, str]]:
+        """Mass centre and terminal of every rigid arm of a body."""
+        return {
+            f"{body}/arm{terminal.removeprefix(body)}": (f"{body}.{MASS_CENTER}", terminal)
+            for terminal, (body, _) in self._terminals.items()
+            if body in self._model.bodies
+        }
+
+    @cached_property
+    def _between(self) -> dict[str, tuple[str, str]]:
+        """Tail and head of every joint, constraint, element and load."""
+        ends = {name: end.component.between for name, end in self._tree.ends.items()}
+        for element in self._model.elements:
+            if isinstance(element, Load):
+                ends[element.name] = (GROUND, element.at)
+            else:
+                ends[element.name] = element.between or ends[str(element.joint)]
+        return ends
+
+    def drives(self) -> dict[str, Scalar]:
+        """What prescribed joints take to move: the effort along each of their coordinates."""
+        found: dict[str, Scalar] = {}
+        for name, closure in self._tree.ends.items():
+            joint: Any = closure.component
+            if isinstance(joint, Constraint) or not any(x is not None for x in closure.drive):
+                continue
+            wrench = self.joints[name]
+            inward = transpose(self._chords.ends(name)[1].rotation)
+            force, torque = (times(inward, part) for part in wrench)
+            at, rates = (tuple(getattr(x, c) for x in closure.drive) for c in ("x", "dx"))
+            motion = joint.motion(self._algebra, at, rates)
+            for quantity, s, u in zip(
+                joint.velocities(), motion.angular, motion.linear, strict=True
+            ):
+                found[quantity.name] = dot(s, torque) + dot(u, force)
+        return found
+
+    def network(self) -> dict[str, tuple[Scalar, Scalar]]:
+        """Across and through variable of every edge in scalar subspaces."""
+        exchange = self._acting.exchange
+        if exchange is None:
+            return {}
+        set_label(self._algebra, "network, every edge")
+        names = [b.name for b in exchange.network.branches if not b.port.spatial]
+        return {name: (exchange.across(name), exchange.through(name)) for name in names}
+
+    def gains(self) -> dict[str, Scalar]:
+        """The energy balance of each component of networks, which is zero."""
+        exchange = self._acting.exchange
+        return {} if exchange is None else exchange.gains()
+
+    def variables(self) -> Mapping[str, Scalar]:
+        """``across(R1)`` and ``through(R1)`` of networks, as outputs name them."""
+        exchange = self._acting.exchange
+        return {} if exchange is None else exchange.variables()
+
+    def edges(self) -> dict[str, Edge]:
+        """All edges of the system graph, by name, in both mechanical subspaces at once."""
+        found: dict[str, Edge] = {}
+        for body in self._model.bodies:
+            found[f"{body}/inertia"] = self.inertia(body)
+        for name, closure in self._tree.ends.items():
+            component: Any = closure.component
+            tail, head = (self.terminal(end) for end in component.between)
+            found[name] = self._edge(self.joints[name], tail, head)
+        found |= self.elements
+        return found | self._arms(found)
+
+    def _arms(self, found: Mapping[str, Edge]) -> dict[str, Edge]:
+        """Rigid arms carry what their terminals' other edges exert: the vertex postulate."""
+        received: dict[str, Wrench] = {}
+        for name, (tail, head) in self._between.items():
+            edge = found[name]
+            back = Wrench(negate(edge.through.force), add(negate(edge.through.torque), edge.lever))
+            received[head] = received.get(head, NOTHING) + edge.through
+            received[tail] = received.get(tail, NOTHING) + back
+        return {
+            name: self._edge(
+                received.get(head, NOTHING).turned(), self.terminal(tail), self.terminal(head)
+            )
+            for name, (tail, head) in self._rigid.items()
+        }

@@ -1,0 +1,161 @@
+"""The mass matrix: (13) and (15) of the paper with H applied, never multiplied out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from linegraph.algebra.protocol import set_label
+from linegraph.algebra.scalar import Scalar
+from linegraph.components.joints.base import NO_MOMENTS
+from linegraph.dynamics.orthogonality import Arm, applied_to, gathered, projection
+from linegraph.kinematics.links import KinematicTree, carried, carried_in_plane, joined
+from linegraph.kinematics.state_layout import Freedom
+from linegraph.spatial import vector
+from linegraph.spatial.rotation import IDENTITY_MATRIX, Full, Relabel, Turn
+from linegraph.spatial.vector import ZERO, Matrix, Vector, add, cross, dot
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from linegraph.algebra.protocol import Algebra
+    from linegraph.components.joints import Moments
+
+Rows = list[list[Scalar]]
+Column = Iterator[tuple[Freedom, Scalar]]
+"""What a force on a link does along each freedom between the link and ground."""
+
+
+def mass_matrix(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> Rows:
+    """M(q), n x n: (13) and (15) of the paper with H applied.
+
+    The composite of a link is what H gathers: all mass carried by its joint. Its inertia force for a unit
+    acceleration of one coordinate, projected on every joint on the way to the root, is one column of M.
+    The force is carried from frame to frame, or in long chains to ground once and for all.
+    """
+    size = len(tree.velocities)
+    rows: Rows = [[0] * size for _ in range(size)]
+    carried_by = composites(tree, algebra, crossed)
+    inward = _inward_in_ground if ground_is_cheaper(tree, crossed) else _inward_by_frames
+    columns = inward(tree, algebra, crossed)
+    for i, link in enumerate(tree.links):
+        set_label(algebra, f"mass matrix, {link.caption}")
+        motion = crossed[i].motion
+        for a, freedom in enumerate(link.velocities):
+            force, torque = inertia_force(carried_by[i], motion.angular[a], motion.linear[a])
+            for b in range(a + 1):
+                entry = projection(motion, b, force, torque)
+                _contribute(rows, freedom, link.velocities[b], entry, once=a == b)
+            for other, entry in columns(i, force, torque):
+                _contribute(rows, freedom, other, entry, once=False)
+    return rows
+
+
+def _inward_by_frames(
+    tree: KinematicTree, algebra: Algebra, crossed: list[Arm]
+) -> Callable[[int, Vector, Vector], Column]:
+    """Carry a link's force and torque inward, from working frame to working frame."""
+
+    def column(i: int, force: Vector, torque: Vector) -> Column:
+        while (parent := tree.links[i].parent) >= 0:
+            force, torque = gathered(crossed[i], force, torque)
+            i = parent
+            for b, freedom in enumerate(tree.links[i].velocities):
+                yield freedom, projection(crossed[i].motion, b, force, torque)
+
+    return column
+
+
+def _inward_in_ground(
+    tree: KinematicTree, algebra: Algebra, crossed: list[Arm]
+) -> Callable[[int, Vector, Vector], Column]:
+    """Carry a link's force and torque to the origin of ground, where all joints' axes are known too."""
+    rows: list[Matrix] = []
+    places: list[Vector] = []
+    axes: list[list[tuple[Vector, Vector]]] = []
+    for link, arm in zip(tree.links, crossed, strict=True):
+        set_label(algebra, f"pose, {link.caption}")
+        outer = rows[link.parent] if link.parent >= 0 else IDENTITY_MATRIX
+        origin = places[link.parent] if link.parent >= 0 else ZERO
+        at = add(origin, vector.times(outer, arm.at))
+        x, y, z = (arm.rotation.into(row) for row in outer)
+        rows.append((x, y, z))
+        places.append(at)
+        turned = [vector.times(rows[-1], s) for s in arm.motion.angular]
+        moved = [vector.times(rows[-1], u) for u in arm.motion.linear]
+        # a turn about an axis through `at` moves the body's point at the origin of ground; a prescribed
+        # joint has no freedom to project on
+        pairs = zip(turned, moved, strict=True) if link.velocities else ()
+        axes.append([(s, add(u, cross(at, s))) for s, u in pairs])
+
+    def column(i: int, force: Vector, torque: Vector) -> Column:
+        force, torque = vector.times(rows[i], force), vector.times(rows[i], torque)
+        torque = add(torque, cross(places[i], force))
+        while (i := tree.links[i].parent) >= 0:
+            for freedom, (s, u) in zip(tree.links[i].velocities, axes[i], strict=True):
+                yield freedom, dot(s, torque) + dot(u, force)
+
+    return column
+
+
+def ground_is_cheaper(tree: KinematicTree, crossed: list[Arm]) -> bool:
+    """Whether long chains make it worth carrying every column of M to ground.
+
+    Estimated in operations: from frame to frame the turning of two vectors and a lever, at every step;
+    in ground 11 at every step, and about 60 for each link and 40 for each column to get there.
+    """
+    if tree.levelled:
+        return False
+    inward: list[int] = []
+    depth: list[int] = []
+    by_frames = in_ground = 0
+    for link, arm in zip(tree.links, crossed, strict=True):
+        step = sum(TURNING[type(factor)] for factor in arm.rotation.factors)
+        step += 4 * sum(1 for x in arm.at if x != 0)
+        # the root's own step is never crossed: its columns end at its joint
+        inward.append(step + inward[link.parent] if link.parent >= 0 else 0)
+        depth.append(1 + depth[link.parent] if link.parent >= 0 else 0)
+        by_frames += len(link.velocities) * inward[-1]
+        in_ground += 60 + len(link.velocities) * (40 + 11 * depth[-1])
+    return in_ground < by_frames
+
+
+TURNING: dict[type, int] = {Relabel: 0, Turn: 12, Full: 30}
+"""Operations to turn a force and a torque by a factor of a rotation."""
+
+
+def composites(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> list[Moments]:
+    """What each joint carries: moments gathered from the leaves to the root (H m H^T and its kin)."""
+    moments = [arm.moments for arm in crossed]
+    for i in reversed(range(len(tree.links))):
+        link = tree.links[i]
+        if link.parent >= 0:
+            set_label(algebra, f"carried by {link.caption}")
+            carry = moments[i]
+            if crossed[i].level:
+                # what turns against ground moves with its parent like a point
+                carry = NO_MOMENTS._replace(mass=carry.mass)
+            in_plane = link.in_plane and tree.links[link.parent].in_plane
+            carry_over = carried_in_plane if in_plane else carried
+            seen = carry_over(carry, crossed[i].rotation, crossed[i].at)
+            # what depends on q is known by its sums with fewer operations
+            both = joined(moments[link.parent], seen)
+            in_plane = tree.links[link.parent].in_plane
+            moments[link.parent] = both if in_plane else both._replace(about=(None, None, None))
+    return moments
+
+
+def inertia_force(composite: Moments, angular: Vector, linear: Vector) -> tuple[Vector, Vector]:
+    """Force and torque about the origin for accelerations (angular, linear) of a composite at rest."""
+    mass, first, *_ = composite
+    force = add(vector.scale(mass, linear), cross(angular, first))
+    torque = add(applied_to(composite.inertia, angular), cross(first, linear))
+    return force, torque
+
+
+def _contribute(rows: Rows, a: Freedom, b: Freedom, entry: Scalar, *, once: bool) -> None:
+    """Add one product of freedoms to M, on both sides of the diagonal; coupled ones may meet on it."""
+    value = (a.ratio * b.ratio) * entry
+    rows[a.index][b.index] = rows[a.index][b.index] + value
+    if not once:
+        rows[b.index][a.index] = rows[b.index][a.index] + value

@@ -1,0 +1,1 @@
+"""From a model to files: programs, golden vectors and languages. `emit.emit` does it all."""

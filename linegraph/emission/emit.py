@@ -1,0 +1,209 @@
+"""From a model to files: derive, render in each language, write."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Any
+
+from linegraph.errors import ModelError
+from linegraph.files import write_all
+from linegraph.pipeline import derive, placed
+from linegraph.programs.frame_names import named_frames
+from linegraph.programs.register import ON_REQUEST, PROGRAMS, module_of
+from linegraph.version import __version__
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Callable, Iterable, Sequence
+    from pathlib import Path
+
+    from linegraph.ir.golden_vectors import Vectors
+    from linegraph.ir.program import Module
+    from linegraph.kinematics.frame_trees import NamedFrame
+    from linegraph.model.builder import Model
+
+CONVENTIONS = (
+    "Angles are in radians. Quaternions are (x, y, z, w) and must have length 1. A free joint has "
+    "q = (position in the parent frame, quaternion) and v = (linear velocity, angular velocity), both in "
+    "the axes of the moving body; a spherical joint has a quaternion and the angular velocity in these "
+    "axes; a planar joint has q = (x, y, angle) in the parent frame and v = (vx, vy, wz) in the axes of the "
+    "moving body. All other v are derivatives of q. A joint's effort acts along the velocity of its name.",
+)
+
+
+def emit(
+    model: Model,
+    out: str | os.PathLike[str] = ".",
+    *,
+    name: str | None = None,
+    languages: Iterable[str] | None = None,
+    folded: bool = False,
+    functions: Iterable[str] = (),
+    only: Iterable[str] = (),
+    frames: Iterable[str] = (),
+    tests: bool = False,
+    progress: Callable[[str], None] | None = None,
+    warn: Callable[[str], None] | None = None,
+    **options: Any,
+) -> list[Path]:
+    """Derive a model and write its functions as source files.
+
+    Args:
+        model: the system.
+        out: the folder, made if need be.
+        name: prefix of functions and files; default the model's name, cleaned to an identifier.
+        languages: some of `codegen.LANGUAGES`; default all, for Arduino C alone.
+        folded: write the parameters' values into the code instead of keeping them symbolic.
+        functions: further functions to write, of `programs.register.ON_REQUEST`.
+        only: write nothing but these of `programs.register.PROGRAMS` and what they call.
+        frames: bodies, or frames of bodies as ``body.frame``, whose kinematics are to be written.
+        tests: write golden vectors, too: programs that check what is written against another route.
+        progress: called with a short text before each stage.
+        warn: called with what a reader must know of the files; default a Python warning.
+        **options: choices for C: ``trig`` ("libm" or "inline"), ``batch`` (functions of many states),
+            ``real`` ("double" or "float"), ``prefix`` (of functions, types and macros), ``cmake``,
+            ``arduino`` and ``report``, as `codegen.Options` says them.
+
+    Returns:
+        The files written. Nothing is written unless everything could be rendered.
+
+    Raises:
+        LinegraphError: the model cannot be derived, a name cannot be emitted, a file not written.
+
+    Example:
+        >>> import tempfile
+        >>> from linegraph import Model
+        >>> model = Model("pendulum")
+        >>> bob = model.body("bob", mass=2.0, mass_center=(0, 0, -0.5))
+        >>> _ = model.revolute("hinge", between=("ground", bob), axis=(0, 1, 0))
+        >>> [path.name for path in emit(model, tempfile.mkdtemp())]
+        ['pendulum.h', 'pendulum.c', 'pendulum.py']
+    """
+    files = render(
+        model,
+        name=name,
+        languages=languages,
+        folded=folded,
+        functions=functions,
+        only=only,
+        frames=frames,
+        tests=tests,
+        progress=progress,
+        warn=warn,
+        **options,
+    )
+    return write_all(out, files)
+
+
+def render(
+    model: Model,
+    *,
+    name: str | None = None,
+    languages: Iterable[str] | None = None,
+    folded: bool = False,
+    functions: Iterable[str] = (),
+    only: Iterable[str] = (),
+    frames: Iterable[str] = (),
+    tests: bool = False,
+    progress: Callable[[str], None] | None = None,
+    warn: Callable[[str], None] | None = None,
+    **options: Any,
+) -> dict[str, str]:
+    """What `emit` writes, as {file name: text}."""
+    import codegen
+
+    tell = progress or (lambda text: None)
+    choices = codegen.options_of(options)
+    asked = {name for name, x in options.items() if x != getattr(codegen.Options(), name)}
+    heeding = [x for x in codegen.LANGUAGES if asked & codegen.known(x).options]
+    default = heeding if choices.arduino else codegen.LANGUAGES
+    chosen = list(dict.fromkeys(_several(languages or default)))
+    frames, functions, only = _several(frames), _several(functions), _several(only)
+    for language in chosen:
+        if language not in codegen.LANGUAGES:
+            known = ", ".join(codegen.LANGUAGES)
+            raise ModelError(f'language "{language}"', f"is not known; known: {known}")
+    if asked and not set(heeding) & set(chosen):
+        whose, given = " or ".join(map(str.capitalize, heeding)), ", ".join(sorted(asked))
+        problem = f"{whose} is not written: add it to the languages"
+        raise ModelError(f"options of {whose} ({given})", problem)
+    prefix = codegen.naming.identifier(model.name) if name is None else name
+    tell("deriving")
+    module = module_for(model, prefix, folded=folded, functions=functions, only=only, frames=frames)
+    if module.omitted:
+        (warn or _python_warning)(str(derive(model).no_inverse(module.omitted, asked=False)))
+    files: dict[str, str] = {}
+    for language in chosen:
+        tell(f"writing {language}")
+        files |= codegen.render(module, language, choices)
+    if tests:
+        tell("computing golden vectors")
+        found = _vectors(model, module, named_frames(model, frames))
+        for language in chosen:
+            checks = codegen.render_tests(module, found, language, choices)
+            if not checks:
+                tell(f"{language} has no golden vectors")
+            files |= checks
+    return files
+
+
+def _python_warning(text: str) -> None:
+    warnings.warn(text, stacklevel=4)
+
+
+def _several(names: Iterable[str]) -> tuple[str, ...]:
+    """Names; one alone is one."""
+    return (names,) if isinstance(names, str) else tuple(names)
+
+
+def _vectors(model: Model, module: Module, frames: Sequence[NamedFrame]) -> Vectors:
+    """Golden vectors of a module."""
+    from linegraph.verification import golden
+
+    try:
+        return golden.vectors(derive(model), module, frames=frames)
+    except ModelError as error:
+        raise placed(error, model) from None
+
+
+def module_for(
+    model: Model,
+    name: str,
+    *,
+    folded: bool = False,
+    functions: Iterable[str] = (),
+    only: Iterable[str] = (),
+    frames: Iterable[str] = (),
+) -> Module:
+    """The program of every function of a model: what operation counts are taken from.
+
+    Example:
+        >>> from linegraph import Model
+        >>> model = Model("pendulum")
+        >>> bob = model.body("bob", mass=2.0, mass_center=(0, 0, -0.5))
+        >>> _ = model.revolute("hinge", between=("ground", bob), axis=(0, 1, 0))
+        >>> module_for(model, "m", only=("frames", "center_of_mass"), frames=("bob",)).programs[:2]
+        (<program frame_bob_pose(q): 2 operations>, <program frame_bob_velocity(q, v): 0 operations>)
+    """
+    about = [f"Equations of motion of {model.name}, derived by linegraph {__version__}."]
+    about += [text for text in (model.about,) if text]
+    wanted, few = tuple(functions), tuple(only)
+    for known, chosen in ((ON_REQUEST, wanted), (tuple(PROGRAMS), few)):
+        for function in chosen:
+            if function not in known:
+                raise ModelError(f'function "{function}"', f"is not one of {', '.join(known)}")
+    about = [*about, *CONVENTIONS]
+    named = named_frames(model, frames)
+    derivation = derive(model)
+    try:
+        return module_of(
+            derivation,
+            name,
+            folded=folded,
+            about=about,
+            wanted=wanted,
+            only=few,
+            frames=named,
+        )
+    except ModelError as error:
+        raise placed(error, model) from None

@@ -1,5 +1,0 @@
-"""Golden vectors: states of a model, and what its functions return there by a route of their own."""
-
-from linegraph.golden.states import vectors
-
-__all__ = ["vectors"]

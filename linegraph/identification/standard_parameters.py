@@ -1,0 +1,231 @@
+"""The standard parameters pi: what inverse dynamics is linear in, ten of each link and three of each joint.
+
+    link.m                              mass (kg)
+    link.mx, my, mz                     first moment of mass (kg m)
+    link.Ixx, Ixy, Iyy, Ixz, Iyz, Izz   inertia (kg m^2)
+    joint.damping                       viscous friction: damping w
+    joint.friction                      dry friction: friction tanh(w / width)
+    joint.armature                      inertia along the joint's velocity: armature dw/dt
+
+A link is what one moving joint carries, all bodies welded together; it has the name of the body that the
+joint is connected to. Its moments are about that body's origin and in its axes: the inertia is not about the
+mass centre. Joints are those of one freedom with a velocity of their own: a joint that follows another adds
+to the other's parameters, one in prescribed motion has none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from linegraph.components.body import Placement
+from linegraph.components.forces import Damper, Friction
+from linegraph.components.joints.base import NO_MOMENTS
+from linegraph.components.parameters import names_in, resolver
+from linegraph.ir.program import Quantity
+from linegraph.kinematics.links import body_moments, compose, inverse, joined
+from linegraph.spatial.rotation import IDENTITY_MATRIX
+from linegraph.spatial.vector import ZERO
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from linegraph.algebra.protocol import Algebra
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.components.forces import Element, Load
+    from linegraph.kinematics.links import KinematicTree
+    from linegraph.kinematics.state_layout import Freedom
+    from linegraph.model.builder import Model
+
+MOMENTS = ("m", "mx", "my", "mz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz")
+"""The ten of a link, in this order: that of Pinocchio's `toDynamicParameters`."""
+
+JOINT_PARTS = ("damping", "friction", "armature")
+"""The three of a joint."""
+
+
+class Home(NamedTuple):
+    """The frame that a link's parameters are told in: that of the body its joint carries.
+
+    Attributes:
+        body: its name, which is the link's.
+        pose: its frame in the link's working frame.
+    """
+
+    body: str
+    pose: Placement
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A joint of one freedom with a velocity of its own.
+
+    Attributes:
+        joint: its name.
+        row: its rate as a sum of entries of v.
+        width: the rate at which its dry friction has risen to 76 % (rad/s or m/s), a model value.
+        turns: whether it turns and does not slide.
+    """
+
+    joint: str
+    row: tuple[Freedom, ...]
+    width: Any
+    turns: bool
+
+    def rate(self, v: Any) -> Scalar:
+        """The same sum over v, or over its derivatives."""
+        total: Scalar = 0
+        for freedom in self.row:
+            total = total + freedom.ratio * v[freedom.index]
+        return total
+
+
+def homes(tree: KinematicTree) -> list[Home]:
+    """Of each link the body that its joint carries."""
+    found: dict[int, Home] = {}
+    for body, (link, pose) in tree.bodies.items():
+        if link >= 0:
+            found.setdefault(link, Home(body, pose))
+    return [found[i] for i in range(len(tree.links))]
+
+
+def axes(model: Model, tree: KinematicTree) -> list[Axis]:
+    """The joints that have parameters of their own, in declared order."""
+    followers = {coupling.joint for coupling in model.couplings}
+    found = []
+    for joint in model.joints:
+        place = tree.layout.own(joint.name)
+        own = place is not None and place.velocities and joint.name not in followers
+        if joint.freedoms == 1 and place is not None and own:
+            row = (*place.velocities, *place.less[1])
+            turns = joint.velocities()[0].unit == "rad/s"
+            found.append(Axis(joint.name, row, _width(model, joint.name), turns))
+    return found
+
+
+def _width(model: Model, joint: str) -> Any:
+    """The width of a joint's first friction element; that of the word's default where there is none."""
+    own = (e for e in model.force_elements if isinstance(e, Friction) and e.joint == joint)
+    constant = (e.width for e in own if names_in(e.width) <= set(model.parameters))
+    return next(constant, Friction.width)
+
+
+def quantities(model: Model, tree: KinematicTree) -> tuple[Quantity, ...]:
+    """The standard parameters with their units, links before joints."""
+    found = []
+    for home in homes(tree):
+        who = f"of {home.body}"
+        texts = (
+            ("kg", "mass"),
+            *(("kg*m", f"first moment of mass {c}") for c in "xyz"),
+            *(("kg*m^2", f"inertia {part[1:]} about its origin") for part in MOMENTS[4:]),
+        )
+        for part, (unit, meaning) in zip(MOMENTS, texts, strict=True):
+            found.append(Quantity(f"{home.body}.{part}", unit, f"{meaning}, {who}"))
+    for axis in axes(model, tree):
+        units = ("N*m*s", "N*m", "kg*m^2") if axis.turns else ("N*s/m", "N", "kg")
+        texts = tuple(
+            zip(units, ("viscous friction", "dry friction", "rotor inertia"), strict=True)
+        )
+        for part, (unit, meaning) in zip(JOINT_PARTS, texts, strict=True):
+            found.append(
+                Quantity(f"{axis.joint}.{part}", unit, f"{meaning}, along joint {axis.joint}")
+            )
+    return tuple(found)
+
+
+def link_values(
+    model: Model, tree: KinematicTree, algebra: Algebra, parameters: Mapping[str, Scalar]
+) -> list[Scalar]:
+    """The ten moments of each link, of the model's own numbers."""
+    resolve = resolver(algebra, parameters)
+    found = homes(tree)
+    moments = [NO_MOMENTS] * len(found)
+    for name, (link, pose) in tree.bodies.items():
+        if link < 0:
+            continue
+        home = found[link]
+        here = Placement(ZERO, IDENTITY_MATRIX)
+        if name != home.body:
+            here = compose(inverse(home.pose), pose, model.snap)
+        moments[link] = joined(moments[link], body_moments(model.bodies[name], resolve, here))
+    values: list[Scalar] = []
+    for total in moments:
+        xx, xy, xz, yy, yz, zz = total.inertia
+        values += [total.mass, *total.first, xx, xy, yy, xz, yz, zz]
+    return values
+
+
+@dataclass(frozen=True)
+class Bearings:
+    """What joints' own elements are worth as parameters.
+
+    Attributes:
+        damping, friction: by joint.
+        others: the elements and loads that are no parameters: they make `rest`.
+    """
+
+    damping: dict[str, Scalar]
+    friction: dict[str, Scalar]
+    others: tuple[Element | Load, ...]
+
+
+def friction_values(
+    model: Model,
+    tree: KinematicTree,
+    algebra: Algebra,
+    parameters: Mapping[str, Scalar],
+    elements: Iterable[Element | Load],
+) -> Bearings:
+    """Sort elements into joints' parameters and all others."""
+    resolve = resolver(algebra, parameters)
+    known = {axis.joint: axis for axis in axes(model, tree)}
+    damping: dict[str, Scalar] = dict.fromkeys(known, 0)
+    friction: dict[str, Scalar] = dict.fromkeys(known, 0)
+    others: list[Element | Load] = []
+    for element in elements:
+        seat = _seat(tree, known, element)
+        constant = all(names_in(value) <= set(model.parameters) for value in element.values())
+        if seat is None or not constant or not isinstance(element, (Damper, Friction)):
+            others.append(element)
+            continue
+        axis, ratio = seat
+        if isinstance(element, Damper):
+            viscous = element.damping
+        else:
+            same = resolve(element.width) == resolve(axis.width) and ratio in (1, -1)
+            dry = resolve(element.coulomb)
+            if dry != 0 and not same:
+                # it rises with another width than the joint's column
+                others.append(element)
+                continue
+            viscous = element.viscous
+            friction[axis.joint] = friction[axis.joint] + dry
+        damping[axis.joint] = damping[axis.joint] + ratio * ratio * resolve(viscous)
+    return Bearings(damping, friction, tuple(others))
+
+
+def _seat(
+    tree: KinematicTree, known: Mapping[str, Axis], element: Element | Load
+) -> tuple[Axis, Scalar] | None:
+    """The joint whose parameters an element adds to, and how much faster its own joint is."""
+    joint = getattr(element, "joint", None)
+    if joint is None:
+        return None
+    if joint in known:
+        return known[joint], 1
+    return led_by(tree, known, joint)
+
+
+def led_by(
+    tree: KinematicTree, known: Mapping[str, Axis], joint: str
+) -> tuple[Axis, Scalar] | None:
+    """Of a joint that follows another of `known`: that other, and the ratio."""
+    place = tree.layout.own(joint)
+    if place is None or tree.levelled or len(place.velocities) != 1:
+        return None
+    (freedom,) = place.velocities
+    for axis in known.values():
+        if [own.index for own in axis.row] == [freedom.index]:
+            return axis, freedom.ratio
+    return None

@@ -1,0 +1,342 @@
+"""Stage 5: a `Program`, the one thing code generation sees.
+
+Named arguments, single assignments in order, named results. Nothing in it knows of bodies or joints; what
+a reader should know of them stands in the labels and in the texts of the `Module`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from linegraph.ir.dag import NEG, SUB, SYMBOL, Node, Operand
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+PREPARED_SUFFIX = "_prepared"
+"""How the name of a function ends that takes the constants of `prepare` in place of the parameters."""
+
+INLINE_LIMIT = 6
+"""An expression used once is written in place while the line stays below this many operations."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A coordinate, input or parameter, as the head of an emitted file lists it."""
+
+    name: str
+    unit: str
+    about: str = ""
+    value: float | None = None
+
+
+@dataclass(frozen=True)
+class Argument:
+    """What a function is given: an array of `size` numbers, ``p`` (the parameters) or ``t`` (a number)."""
+
+    name: str
+    size: int | None
+    about: str
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a function returns: a dense array, its `entries` row-major.
+
+    Attributes:
+        counts: for each extent the count it is called by, ``NV`` say, or nothing; none where the name of the
+            result says it.
+    """
+
+    name: str
+    shape: tuple[int, ...]
+    entries: tuple[Operand, ...]
+    about: str
+    counts: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Check:
+    """After `node` is known: unless ``node > bound``, stop with `status`, results untouched.
+
+    Attributes:
+        status, about, name: the number, the meaning and the name of the status (`statuses`).
+        fraction: of `bound` is what the node must exceed; it stands for the rounding of doubles.
+    """
+
+    node: Node
+    bound: Operand
+    status: int
+    about: str
+    name: str = ""
+    fraction: float | None = None
+
+
+@dataclass(frozen=True)
+class Call:
+    """Run another program first; its results become local arrays of these names and sizes."""
+
+    program: str
+    arguments: tuple[str, ...]
+    results: tuple[Argument, ...]
+
+
+@dataclass(frozen=True, repr=False)
+class Program:
+    """One function: ``results = name(arguments)``.
+
+    Attributes:
+        steps: the nodes that get a name of their own, in an order in which each follows its operands.
+        status: whether it returns a status in languages without exceptions, even if no check can fail.
+        turned: indices of differences a - b that are computed as b - a, since only their negative is used.
+        handed: the function that does the same from the constants of `prepare`, where its text is not to
+            stand twice; empty where the function is emitted whole.
+        guarded: indices of divisions that may be by zero, since what uses them checks that first.
+    """
+
+    name: str
+    about: str
+    arguments: tuple[Argument, ...]
+    steps: tuple[Node, ...]
+    results: tuple[Result, ...]
+    turned: frozenset[int] = frozenset()
+    checks: tuple[Check, ...] = ()
+    calls: tuple[Call, ...] = ()
+    status: bool = False
+    handed: str = ""
+    guarded: frozenset[int] = frozenset()
+
+    def __repr__(self) -> str:
+        """Its name, arguments and cost."""
+        arguments = ", ".join(argument.name for argument in self.arguments)
+        return f"<program {self.name}({arguments}): {self.operations} operations>"
+
+    @cached_property
+    def live(self) -> list[Node]:
+        """All nodes that results and checks need, each after its operands."""
+        return _live(_roots(self.results, self.checks))
+
+    @property
+    def operations(self) -> int:
+        """Arithmetic operations and function calls executed: every node once; a change of sign is free."""
+        return operations_of(self.results, self.checks)
+
+
+class Status(NamedTuple):
+    """What a function returns where it cannot compute: a number, what that means, and its name."""
+
+    number: int
+    about: str
+    name: str
+
+
+@dataclass(frozen=True)
+class Routine:
+    """A function that iterates or decides while it runs: its body is an algorithm each language has written.
+
+    Attributes:
+        algorithm: which; the name of a template.
+        statuses: what each status other than 0 means.
+        uses: the functions it calls.
+        details: what the algorithm needs to know of this module: numbers and lists of numbers.
+        handed: as of `Program`.
+    """
+
+    name: str
+    about: str
+    arguments: tuple[Argument, ...]
+    results: tuple[Result, ...]
+    algorithm: str
+    statuses: tuple[Status, ...]
+    uses: tuple[str, ...]
+    details: tuple[tuple[str, Any], ...] = ()
+    status: bool = True
+    calls: tuple[Call, ...] = ()
+    handed: str = ""
+
+
+@dataclass(frozen=True)
+class Listing:
+    """Quantities of one kind, listed in the head of a file and by a count and an array of names.
+
+    Attributes:
+        symbol: what the quantities are called in formulas, and in the array's name.
+        count: the name of their number; empty for those without count and array.
+        heading: what they are, in the plural.
+        sizes: the results that have so many entries.
+        groups: in the head of a file, one row each; a group's name and how many quantities it has.
+        shown: whether the head of a file lists them.
+    """
+
+    symbol: str
+    count: str
+    heading: str
+    quantities: tuple[Quantity, ...]
+    sizes: tuple[str, ...] = ()
+    groups: tuple[tuple[Quantity, int], ...] = ()
+    shown: bool = True
+
+
+@dataclass(frozen=True, repr=False)
+class Module:
+    """All functions of one model and what their reader must know.
+
+    Attributes:
+        name: the prefix of everything emitted; an identifier.
+        about: paragraphs for the head of the file.
+        time: whether the functions take the time ``t``.
+        listings: further quantities of the model's functions.
+        counts: further numbers that have a name.
+        omitted: the functions that are left out as they divide by a singular mass matrix.
+    """
+
+    name: str
+    about: tuple[str, ...]
+    positions: tuple[Quantity, ...]
+    velocities: tuple[Quantity, ...]
+    inputs: tuple[Quantity, ...]
+    parameters: tuple[Quantity, ...]
+    time: bool
+    programs: tuple[Program | Routine, ...]
+    listings: tuple[Listing, ...] = ()
+    counts: tuple[tuple[str, int], ...] = ()
+    omitted: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        """Its name and functions."""
+        return f"<module {self.name}: {', '.join(program.name for program in self.programs)}>"
+
+
+def assemble(
+    name: str,
+    about: str,
+    arguments: tuple[Argument, ...],
+    results: tuple[Result, ...],
+    checks: tuple[Check, ...] = (),
+    calls: tuple[Call, ...] = (),
+    *,
+    status: bool = False,
+) -> Program:
+    """Keep what the results need, put it in order and decide which nodes get a name.
+
+    A node is named when it is used more than once or when the line would grow past `INLINE_LIMIT`.
+    """
+    live = _live(_roots(results, checks))
+    uses, negated = count_uses(live, results, checks)
+    turned = frozenset(
+        node.index
+        for node in live
+        if node.op == SUB and uses[node.index] == negated.get(node.index, 0)
+    )
+    steps = _named(live, uses, {check.node.index for check in checks})
+    return Program(name, about, arguments, steps, results, turned, checks, calls, status)
+
+
+def operations_of(results: tuple[Result, ...], checks: tuple[Check, ...] = ()) -> int:
+    """Operations that results and checks take together; a change of sign is free."""
+    scaled = sum(x.fraction is not None and isinstance(x.bound, Node) for x in checks)
+    return scaled + len(_operations(_roots(results, checks)))
+
+
+def leaves(x: Operand) -> int:
+    """How many symbols and numbers stand in an operand that is written out, shared parts as often as used.
+
+    Example:
+        >>> from linegraph.ir.dag import Dag
+        >>> x = Dag().symbol("x")
+        >>> square = (x + 1) * (x + 2)
+        >>> leaves(square * square + x)
+        9
+    """
+    if not isinstance(x, Node):
+        return 1
+    counts: dict[int, int] = {}
+    for node in _live([x]):
+        operands = () if node.op == SYMBOL else (p for p in (node.a, node.b) if p is not None)
+        counts[node.index] = (
+            sum(counts[p.index] if isinstance(p, Node) else 1 for p in operands) or 1
+        )
+    return counts[x.index]
+
+
+def needed_for(entries: Iterable[Operand]) -> frozenset[int]:
+    """The indices of the operations that some entries take together."""
+    return frozenset(_operations([entry for entry in entries if isinstance(entry, Node)]))
+
+
+def _operations(roots: list[Node]) -> list[int]:
+    return [node.index for node in _live(roots) if node.op not in (SYMBOL, NEG)]
+
+
+def reads(argument: str, results: tuple[Result, ...]) -> bool:
+    """Whether any result depends on an argument of this name."""
+    live = _live(_roots(results, ()))
+    return any(node.op == SYMBOL and node.a == argument for node in live)
+
+
+def _roots(results: tuple[Result, ...], checks: tuple[Check, ...]) -> list[Node]:
+    roots = [entry for result in results for entry in result.entries if isinstance(entry, Node)]
+    for check in checks:
+        roots += [x for x in (check.node, check.bound) if isinstance(x, Node)]
+    return roots
+
+
+def _live(roots: Iterable[Node]) -> list[Node]:
+    """All nodes that `roots` depend on, in order of construction; without recursion."""
+    found = {node.index: node for node in roots}
+    pending = list(found.values())
+    while pending:
+        node = pending.pop()
+        for operand in (node.a, node.b):
+            if isinstance(operand, Node) and operand.index not in found:
+                found[operand.index] = operand
+                pending.append(operand)
+    return [found[index] for index in sorted(found)]
+
+
+def count_uses(
+    live: list[Node], results: tuple[Result, ...], checks: tuple[Check, ...]
+) -> tuple[dict[int, int], dict[int, int]]:
+    """How often each node is used, and how often of that only to be negated.
+
+    Args:
+        live: all nodes of a program, each after its operands.
+        results: of the program; each entry is a use.
+        checks: of the program; what is compared is used, too.
+    """
+    uses = dict.fromkeys((node.index for node in live), 0)
+    negated: dict[int, int] = {}
+    for root in _roots(results, checks):
+        uses[root.index] += 1
+    for node in reversed(live):
+        if node.op == NEG:
+            # a negation is written in place, so each of its uses is one of its operand
+            uses[node.a.index] += uses[node.index]
+            negated[node.a.index] = uses[node.index]
+            continue
+        for operand in (node.a, node.b):
+            if isinstance(operand, Node):
+                uses[operand.index] += 1
+    return uses, negated
+
+
+def _named(live: list[Node], uses: dict[int, int], forced: set[int]) -> tuple[Node, ...]:
+    """The nodes worth a name: shared ones, checked ones and those that would make a line too long."""
+    size: dict[int, int] = {}
+    named = []
+    for node in live:
+        index = node.index
+        if node.op == SYMBOL:
+            size[index] = 0
+            continue
+        total = 1
+        for operand in (node.a, node.b):
+            if isinstance(operand, Node):
+                total += size[operand.index]
+        if node.op != NEG and (uses[index] > 1 or total > INLINE_LIMIT or index in forced):
+            named.append(node)
+            total = 0
+        size[index] = total
+    return tuple(named)

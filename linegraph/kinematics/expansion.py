@@ -1,0 +1,110 @@
+"""Joints of several axes as joints of one axis each, with massless links in between.
+
+The motion stays the same, but each axis can have its own working frame, and moments that only a turn about
+the last axis makes felt are handed on beyond it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+from linegraph.components.joints.base import NO_MOMENTS
+from linegraph.components.joints.composition import joined
+from linegraph.kinematics.links import KinematicTree, Link, carried
+from linegraph.kinematics.state_layout import Place
+from linegraph.spatial.rotation import Relabel, Rotation
+from linegraph.spatial.vector import ZERO
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from linegraph.components.joints import Joint
+
+
+class Expanded(NamedTuple):
+    """A tree of more links.
+
+    Attributes:
+        tree: the links; what it says of bodies and ends holds for the links before.
+        last: for each link before, the one that has its bodies.
+        turns: the working axes of that one in those of the link before.
+    """
+
+    tree: KinematicTree
+    last: tuple[int, ...]
+    turns: tuple[Rotation, ...]
+
+
+def expanded(tree: KinematicTree) -> Expanded:
+    """Every joint that has parts taken apart, where it is made of numbers."""
+    links: list[Link] = []
+    last: list[int] = []
+    turns: list[Rotation] = []
+    for before in tree.links:
+        link = before
+        if link.parent >= 0:
+            back = turns[link.parent].inverse()
+            rotation = joined(back, link.rotation)
+            near = last[link.parent]
+            link = replace(link, parent=near, rotation=rotation, at=back.out(link.at))
+        parts = _parts(link)
+        turn = Rotation()
+        if parts:
+            sequence, turn = _sequence(link, parts, len(links))
+            links += sequence
+        else:
+            links.append(link)
+        last.append(len(links) - 1)
+        turns.append(turn)
+    return Expanded(replace(tree, links=tuple(links)), tuple(last), tuple(turns))
+
+
+def _parts(link: Link) -> tuple[tuple[Joint, Rotation], ...]:
+    """A joint's parts, where they are better by themselves: with axes of numbers that are cheap to get to.
+
+    A hinge turns anyway; what else is about an oblique axis would have to be turned to it and back.
+    """
+    parts = () if link.place.level else link.joint.sequence()
+    apart = all(
+        all(isinstance(x, (int, float)) for row in axes.matrix() for x in row)
+        and (joint.turns or all(isinstance(factor, Relabel) for factor in axes.factors))
+        for joint, axes in parts
+    )
+    return parts if apart else ()
+
+
+def _sequence(
+    link: Link, parts: Sequence[tuple[Joint, Rotation]], first: int
+) -> tuple[list[Link], Rotation]:
+    """The links of a joint's parts, and the axes of the last one in those of the link.
+
+    With B the axes in which a part is about z, the motion is the product of all ``B m B^T``.
+    """
+    shares = list(zip(parts, _places(link.place, [joint for joint, _ in parts]), strict=True))
+    if not link.forward:
+        shares.reverse()
+    found: list[Link] = []
+    near, at, parent = link.rotation, link.at, link.parent
+    for (joint, axes), place in shares:
+        rotation = joined(near, axes)
+        inside = f"inside {link.joint.name}"
+        found.append(Link(inside, parent, joint, link.forward, rotation, at, place, NO_MOMENTS))
+        near, at, parent = axes.inverse(), ZERO, first + len(found) - 1
+    moments = carried(link.moments, near, ZERO)
+    found[-1] = replace(found[-1], name=link.name, moments=moments)
+    return found, near.inverse()
+
+
+def _places(place: Place, parts: Sequence[Joint]) -> list[Place]:
+    """Each part's share of a joint's coordinates."""
+    found = []
+    at = rate = 0
+    for joint in parts:
+        q, v = len(joint.positions()), joint.freedoms
+        if place.drive:
+            found.append(Place(drive=place.drive[at : at + q]))
+        else:
+            found.append(Place(place.positions[at : at + q], place.velocities[rate : rate + v]))
+        at, rate = at + q, rate + v
+    return found

@@ -1,0 +1,167 @@
+"""Trees for kinematics: named frames as links of their own, in working frames that suit them.
+
+A frame that is asked for becomes a massless link welded to the link that carries it, so that the working
+frames on the way to it are turned and slid until the way to the frame itself is short. Where nothing is
+asked of masses, only the links on the way are kept.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+from linegraph.components.body import MASS_CENTER, Placement
+from linegraph.components.joints import Fixed
+from linegraph.components.joints.base import NO_MOMENTS
+from linegraph.components.validation import nearest
+from linegraph.errors import ModelError
+from linegraph.kinematics.links import (
+    KinematicTree,
+    Link,
+    Seat,
+    carried,
+    compose,
+    mass_center,
+    resolved,
+)
+from linegraph.kinematics.state_layout import Place
+from linegraph.kinematics.working_frames import DUST, shortened
+from linegraph.spatial import vector
+from linegraph.spatial.rotation import IDENTITY_MATRIX, Rotation, rotation_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from typing import Any
+
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.components.joints import Moments
+    from linegraph.model.builder import Model
+    from linegraph.spatial.vector import Vector
+
+
+class Tipped(NamedTuple):
+    """A tree whose last links are frames that were asked for.
+
+    Attributes:
+        tree: the links in their shortest working frames.
+        tips: of each frame its link; its working frame is the frame itself.
+        mass: the mass of all that moves; 0 where masses were left out.
+        at_rest: what of the first moment of mass the links' own moments lack: it never moves.
+    """
+
+    tree: KinematicTree
+    tips: tuple[int, ...]
+    mass: Scalar = 0
+    at_rest: Vector = vector.ZERO
+
+
+class NamedFrame(NamedTuple):
+    """A frame that is asked for: what it is called in emitted code, and in the model."""
+
+    identifier: str
+    name: str
+
+
+def require_frame(model: Model, frame: str) -> None:
+    """Refuse a name that is neither a body nor a frame of one.
+
+    Raises:
+        ModelError: says what is like it.
+    """
+    known = [name for name, (body, _) in model.terminals().items() if body in model.bodies]
+    body = frame.removesuffix(f".{MASS_CENTER}")
+    if frame not in known and (body == frame or body not in model.bodies):
+        raise ModelError(
+            f'frame "{frame}"', f"is no body and no frame of one; {nearest(frame, known)}"
+        )
+
+
+def seat_of(
+    model: Model, tree: KinematicTree, resolve: Callable[[Any], Scalar], frame: str
+) -> Seat:
+    """The link that carries a frame, -1 for ground, and where it is there.
+
+    Args:
+        model: what was said.
+        tree: the walk's.
+        resolve: from model values to scalars.
+        frame: ``body``, ``body.frame`` or ``body.mass_center``.
+    """
+    terminals = model.terminals()
+    if frame in terminals:
+        body, placement = terminals[frame]
+        x, y, z = (resolved(row, resolve) for row in placement.rotation)
+        placement = Placement(resolved(placement.at, resolve), (x, y, z))
+    else:
+        body = frame.removesuffix(f".{MASS_CENTER}")
+        placement = Placement(mass_center(model.bodies[body], resolve), IDENTITY_MATRIX)
+    link, pose = tree.bodies[body]
+    whole = compose(pose, placement, DUST)
+    return Seat(link, whole.at, whole.rotation)
+
+
+def tipped(
+    tree: KinematicTree, seats: Sequence[Seat], *, masses: bool, turning: bool = True
+) -> Tipped:
+    """A tree for the kinematics of frames.
+
+    Args:
+        tree: the walk's.
+        seats: the frames.
+        masses: whether the centre of mass is asked for, or momentum; otherwise only the links on the ways
+            to the frames are kept, without masses.
+        turning: whether the axes of the frames are asked for; otherwise they are any, and only the frames'
+            origins and velocities are right.
+    """
+    links = list(tree.links)
+    mass: Scalar = sum((link.moments.mass for link in links), start=0)
+    if not masses:
+        links, seats = _on_the_way(links, seats)
+    count = len(links)
+    links += [
+        Link(
+            "",
+            seat.link,
+            Fixed("frame", ("", "")),
+            True,
+            rotation_of(seat.rotation if turning else IDENTITY_MATRIX),
+            seat.at,
+            Place(),
+            NO_MOMENTS,
+        )
+        for seat in seats
+    ]
+    short = shortened(replace(tree, links=tuple(links)), whole=True, turning=turning)
+    tips = short.places[count:]
+    if not turning:
+        parts = list(short.tree.links)
+        for tip in tips:
+            parts[tip] = replace(parts[tip], rotation=Rotation())
+        return Tipped(replace(short.tree, links=tuple(parts)), tips)
+    if not masses:
+        return Tipped(short.tree, tips)
+    return Tipped(short.tree, tips, mass, _resting(short.at_rest))
+
+
+def _on_the_way(links: Sequence[Link], seats: Sequence[Seat]) -> tuple[list[Link], list[Seat]]:
+    """The links between ground and some frames, without masses."""
+    kept: set[int] = set()
+    for seat in seats:
+        i = seat.link
+        while i >= 0 and i not in kept:
+            kept.add(i)
+            i = links[i].parent
+    place = {old: new for new, old in enumerate(sorted(kept))} | {-1: -1}
+    found = [
+        replace(links[old], parent=place[links[old].parent], moments=NO_MOMENTS)
+        for old in sorted(kept)
+    ]
+    return found, [seat._replace(link=place[seat.link]) for seat in seats]
+
+
+def _resting(handed: Sequence[tuple[Moments, Link]]) -> Vector:
+    """The first moment of what links on ground have handed to it, in its axes."""
+    total = vector.ZERO
+    for moments, link in handed:
+        total = vector.add(total, carried(moments, link.rotation, link.at).first)
+    return total

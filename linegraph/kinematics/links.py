@@ -1,0 +1,389 @@
+"""Stage 3: the links of a mechanical tree, each in a frame of its joint.
+
+A *link* is all bodies welded together beyond one moving joint. Its working frame has its origin at that
+joint and z along the joint's axis. Whatever is constant is folded here once: placements, alignments,
+rotated and shifted mass distributions.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from linegraph.algebra.formula import Formula
+from linegraph.algebra.protocol import Constants
+from linegraph.algebra.scalar import Scalar
+from linegraph.components.body import Body, Placement
+from linegraph.components.joints import Joint, Moments
+from linegraph.components.joints.base import Restriction, point_apart, second_moments
+from linegraph.components.parameters import Parameter
+from linegraph.spatial import vector
+from linegraph.spatial.rotation import Diagonal, Inertia, Rotation, product, rotation_of, snapped
+from linegraph.spatial.vector import ZERO, Matrix, Vector
+
+if TYPE_CHECKING:
+    from linegraph.algebra.jets import Jet
+    from linegraph.components.constraints import Constraint
+    from linegraph.components.constraints.relation import Relation
+    from linegraph.ir.program import Quantity
+    from linegraph.kinematics.state_layout import Freedom, Layout, Place
+    from linegraph.networks import Network
+
+Resolve = Callable[[Any], Scalar]
+
+LEAST_MASS = 1e-37
+"""In kg: less is no mass, and no number with all its digits among floats."""
+
+
+@dataclass(frozen=True)
+class Link:
+    """A rigid body of the reduced tree.
+
+    Attributes:
+        name: the bodies welded into it.
+        parent: index of the link nearer to ground; -1 for ground.
+        joint: what connects it to its parent.
+        forward: whether the joint's edge points away from ground.
+        rotation, at: the joint's near frame in the parent's working frame; constant.
+        place: where the joint's q and v come from.
+        moments: mass distribution about the joint's own origin and in axes that turn with the link.
+        still: whether the working axes do not turn with the link but stay those of the joint's near side.
+        in_plane: whether the link never turns but about its own z; xx then holds its inertia about z, and
+            that is all it holds of second moments.
+    """
+
+    name: str
+    parent: int
+    joint: Joint
+    forward: bool
+    rotation: Rotation
+    at: Vector
+    place: Place
+    moments: Moments
+    still: bool = False
+    in_plane: bool = False
+
+    @property
+    def velocities(self) -> tuple[Freedom, ...]:
+        """Where the joint's velocities stand in the state; none where its motion is prescribed."""
+        return self.place.velocities
+
+    @property
+    def caption(self) -> str:
+        """How comments in emitted code call it: its joint and its bodies."""
+        return f"{self.joint.name} -> {self.name}"
+
+    @property
+    def in_space(self) -> bool:
+        """Whether its joint's rotation is that to ground axes: an orientation in space of its own."""
+        return self.place.in_space
+
+
+class Seat(NamedTuple):
+    """A constant place on a link, -1 for ground: its origin and its axes in the link's working frame."""
+
+    link: int
+    at: Vector
+    rotation: Matrix
+
+
+@dataclass(frozen=True)
+class Closure:
+    """A chord of the tree: a joint that closes a loop, or a constraint.
+
+    Attributes:
+        component: what it is; a joint as resolved in the algebra.
+        tail, head: where its ends are, in aligned axes.
+        drive: what it prescribes.
+        restrictions: a joint's reaction directions; of a joint that is a chord in rotation only those there.
+    """
+
+    component: Joint | Constraint
+    tail: Seat
+    head: Seat
+    drive: tuple[Jet | None, ...] = ()
+    restrictions: tuple[Restriction, ...] = ()
+
+
+@dataclass(frozen=True)
+class KinematicTree:
+    """All links, every parent before its children, and what state and inputs consist of.
+
+    Attributes:
+        layout: coordinates and inputs, and which joint reads which.
+        bodies: where each body's frame is: its link, -1 for ground, and its placement there.
+        closures: what the tree leaves out.
+        relations: constraints without edges, linear in velocities.
+        ends: of every joint and constraint, branch or chord, where it is.
+        network: the scalar networks.
+    """
+
+    links: tuple[Link, ...]
+    gravity: Vector
+    layout: Layout
+    bodies: Mapping[str, tuple[int, Placement]]
+    closures: tuple[Closure, ...] = ()
+    relations: tuple[Relation, ...] = ()
+    ends: Mapping[str, Closure] = field(default_factory=dict)
+    network: Network | None = None
+
+    @property
+    def closed(self) -> bool:
+        """Whether there are constraints."""
+        held = (
+            c.restrictions or c.drive or not isinstance(c.component, Joint) for c in self.closures
+        )
+        return bool(self.relations) or any(held)
+
+    @property
+    def positions(self) -> tuple[Quantity, ...]:
+        """The coordinates q."""
+        return tuple(self.layout.positions)
+
+    @property
+    def velocities(self) -> tuple[Quantity, ...]:
+        """The velocities v."""
+        return tuple(self.layout.velocities)
+
+    @property
+    def inputs(self) -> tuple[Quantity, ...]:
+        """The inputs u."""
+        return tuple(self.layout.inputs)
+
+    @property
+    def coupled(self) -> bool:
+        """Whether two joints share a coordinate."""
+        places = [freedom.index for link in self.links for freedom in link.velocities]
+        return len(places) > len(set(places))
+
+    @property
+    def levelled(self) -> bool:
+        """Whether some link's orientation is measured from ground and not from its parent."""
+        return any(link.place.level for link in self.links)
+
+    @property
+    def outward(self) -> list[int]:
+        """Independent velocities from the root to the leaves, then the states of networks."""
+        order: dict[int, None] = {}
+        for link in self.links:
+            order.update((freedom.index, None) for freedom in link.velocities)
+        order.update((k, None) for k in range(self.layout.mechanical, len(self.velocities)))
+        return list(order)
+
+    def normalise(self, q: list[float]) -> None:
+        """Give the quaternions among the coordinates length 1, in place."""
+        for places in self.quaternions:
+            length = math.hypot(*(q[i] for i in places))
+            for i in places:
+                q[i] /= length
+
+    @property
+    def quaternions(self) -> list[tuple[int, ...]]:
+        """The places in q of the entries x, y, z, w of each unit quaternion."""
+        found = [(link, [freedom.index for freedom in link.place.positions]) for link in self.links]
+        return [tuple(places[-4:]) for link, places in found if len(places) > len(link.velocities)]
+
+    def regrouped(self) -> KinematicTree:
+        """The same M and h from fewer parameters: what a parent can carry is handed to it, leaf to root.
+
+        Exact for the equations of motion, not for joint reactions. Where links stand and what they weigh
+        depends on parameters at most, so that of symbols the sums are computed once, by `prepare`.
+        """
+        return replace(self, links=tuple(handed_on(self.links, links_in_plane(self.links))[0]))
+
+
+def handed_on(
+    links: Sequence[Link], planar: Sequence[bool]
+) -> tuple[list[Link], list[tuple[Moments, Link]]]:
+    """What a parent can carry handed to it, leaf to root.
+
+    Args:
+        links: with moments of their own.
+        planar: of which only the inertia about z is to be kept, since M and h feel no other.
+
+    Returns:
+        The links, and what those on ground hand to it, beside each the link it comes from. Where none is
+        planar, all together have the mass, the first moment and the momentum of before.
+    """
+    found = list(links)
+    at_rest = []
+    for i in reversed(range(len(found))):
+        link = found[i]
+        # of a link that does not turn with its parent only the mass can be handed over
+        split = point_apart if link.place.level else link.joint.regroup
+        kept, handed = split(link.moments)
+        if planar[i]:
+            about = kept.inertia[5]
+            kept = kept._replace(second=(about, 0, 0, 0, 0, 0), about=(None, None, about))
+        found[i] = replace(link, moments=kept, in_plane=planar[i])
+        if link.parent < 0:
+            at_rest.append((handed, link))
+            continue
+        parent = found[link.parent]
+        shifted = carried(handed, link.rotation, link.at)
+        found[link.parent] = replace(parent, moments=joined(parent.moments, shifted))
+    return found, at_rest
+
+
+def links_in_plane(links: Sequence[Link]) -> list[bool]:
+    """Whether a link never turns but about its own z, since all joints inward turn about that direction."""
+    still: list[bool] = []
+    found: list[bool] = []
+    for link in links:
+        outer = link.parent
+        at_rest = outer < 0 or still[outer]
+        free = not (link.place.level or link.place.drive)
+        slides = len(link.joint.slides) == 3
+        still.append(at_rest and slides and free)
+        found.append(link.joint.turns and free and (at_rest or (found[outer] and parallel(link))))
+    return found
+
+
+def parallel(link: Link) -> bool:
+    """Whether a link turns about the direction of its parent's z, either way round."""
+    return link.joint.turns and upright(link)
+
+
+def upright(link: Link) -> bool:
+    """Whether a link's z has the direction of its parent's, either way round, before its joint moves."""
+    return link.rotation.out((0, 0, 1)) in ((0, 0, 1), (0, 0, -1))
+
+
+def carried(moments: Moments, rotation: Rotation, at: Vector) -> Moments:
+    """Moments about an inner origin, resolved about an outer one and in outer axes.
+
+    With b the rotated first moment and f = b + m at the one about the outer origin, the second moments gain
+    at b^T + f at^T.
+    """
+    m = moments.mass
+    b = rotation.out(moments.first)
+    xx, xy, xz, yy, yz, zz = rotation.congruence(moments.second)
+    first = vector.add(b, vector.scale(m, at))
+    return Moments(
+        m,
+        first,
+        (
+            xx + _spread(at[0], b[0], first[0]),
+            xy + (at[0] * b[1] + at[1] * first[0]),
+            xz + (at[0] * b[2] + at[2] * first[0]),
+            yy + _spread(at[1], b[1], first[1]),
+            yz + (at[1] * b[2] + at[2] * first[1]),
+            zz + _spread(at[2], b[2], first[2]),
+        ),
+        _about(moments, rotation, at, vector.add(b, first)),
+    )
+
+
+def _about(moments: Moments, rotation: Rotation, at: Vector, twice: Vector) -> Diagonal:
+    """The diagonal of J, where it was known, in outer axes and about the outer origin."""
+    known = rotation.diagonal(moments.about)
+    p = tuple(x * y for x, y in zip(at, twice, strict=True))
+    x, y, z = (
+        None if j is None else j + (p[(k + 1) % 3] + p[(k + 2) % 3]) for k, j in enumerate(known)
+    )
+    return (x, y, z)
+
+
+def carried_in_plane(moments: Moments, rotation: Rotation, at: Vector) -> Moments:
+    """The same where only the inertia about z counts, on both sides: ``J + 2 at . b + m at . at``."""
+    b = rotation.out(moments.first)
+    first = vector.add(b, vector.scale(moments.mass, at))
+    about = moments.inertia[5]
+    # one after the other: with the first, the sum is what M has beside its diagonal
+    about = about + (at[0] * b[0] + at[1] * b[1])
+    about = about + (at[0] * first[0] + at[1] * first[1])
+    return Moments(moments.mass, first, (about, 0, 0, 0, 0, 0), (None, None, about))
+
+
+def _spread(at: Scalar, inner: Scalar, outer: Scalar) -> Scalar:
+    """``at (inner + outer)``; without mass the two are one, whose product with an arm M needs, too."""
+    shared = inner is outer and not isinstance(at, (int, float))
+    return 2 * (at * inner) if shared else at * (inner + outer)
+
+
+def joined(a: Moments, b: Moments) -> Moments:
+    """The moments of two bodies together, about one origin and in one frame."""
+    second = tuple(x + y for x, y in zip(a.second, b.second, strict=True))
+    known = zip(a.about, b.about, strict=True)
+    x, y, z = (None if j is None or k is None else j + k for j, k in known)
+    return Moments(a.mass + b.mass, vector.add(a.first, b.first), second, (x, y, z))
+
+
+def body_moments(body: Body, resolve: Resolve, pose: Placement) -> Moments:
+    """A body's mass distribution about the origin of a frame in which the body stands at `pose`.
+
+    From the mass centre in one step: what a shift adds and the next one takes off would leave its rounding.
+    """
+    mass = resolve(body.mass)
+    given = tuple(resolve(x) for x in body.inertia)
+    second, about = second_moments(given), (given[0], given[3], given[5])
+    rotation = rotation_of(pose.rotation)
+    if body.first is not None:
+        about_origin = Moments(mass, resolved(body.first, resolve), second, about)
+        return carried(about_origin, rotation, pose.at)
+    center = rotation.out(resolved(body.center or ZERO, resolve))
+    return carried(Moments(mass, ZERO, second, about), rotation, vector.add(pose.at, center))
+
+
+def mass_center(body: Body, resolve: Resolve) -> Vector:
+    """A body's mass centre in its own frame."""
+    if body.first is None:
+        return resolved(body.center or ZERO, resolve)
+    mass = resolve(body.mass)
+    if isinstance(body.mass, Parameter) and body.mass.value == 0:
+        # a link that is given some later: until then 0/0 is to be 0
+        named, least = Formula("name", (body.mass.name,)), Formula("number", (LEAST_MASS,))
+        mass = resolve(Formula("max", (named, least)))
+    first = resolved(body.first, resolve)
+    return ZERO if mass == 0 else (first[0] / mass, first[1] / mass, first[2] / mass)
+
+
+def central_inertia(body: Body, resolve: Resolve) -> Inertia:
+    """A body's inertia tensor about its mass centre, in its own axes."""
+    given = tuple(resolve(x) for x in body.inertia)
+    if body.first is None:
+        return given
+    mass = resolve(body.mass)
+    x, y, z = mass_center(body, resolve)
+    shift = (
+        *(y * y + z * z, -x * y, -x * z),
+        *(x * x + z * z, -y * z, x * x + y * y),
+    )
+    return tuple(a - mass * b for a, b in zip(given, shift, strict=True))
+
+
+def compose(outer: Placement, inner: Placement, snap: float) -> Placement:
+    """A frame given in an inner frame, seen from the outer one."""
+    at = vector.add(outer.at, swept(rotation_of(outer.rotation).out(inner.at), inner.at))
+    return Placement(at, snapped(product(outer.rotation, inner.rotation), snap))
+
+
+def inverse(placement: Placement) -> Placement:
+    """The outer frame seen from the inner one."""
+    back = vector.transpose(placement.rotation)
+    return Placement(vector.negate(rotation_of(back).out(placement.at)), back)
+
+
+def moved(near: Placement, joint: Joint, value: Any, snap: float) -> Placement:
+    """The head frame of a one-freedom joint at a fixed value of its coordinate."""
+    alignment = Placement(ZERO, joint.alignment())
+    motion = joint.motion(Constants(), (value,), (0,))
+    turn = Placement(motion.displacement, snapped(motion.rotation.matrix(), snap))
+    there = compose(compose(near, alignment, snap), turn, snap)
+    return compose(there, inverse(alignment), snap)
+
+
+def swept(turned: Vector, original: Vector, within: float = 4e-16) -> Vector:
+    """Drop the rounding dust, of this part of the original, that is left where an exact zero belongs."""
+    if not all(isinstance(x, (int, float)) for x in (*turned, *original)):
+        return turned
+    scale = max(abs(x) for x in original)
+    x, y, z = (0 if abs(c) <= within * scale else c for c in turned)
+    return (x, y, z)
+
+
+def resolved(a: Vector, resolve: Resolve) -> Vector:
+    """A vector of model values as scalars."""
+    return (resolve(a[0]), resolve(a[1]), resolve(a[2]))

@@ -1,8 +1,0 @@
-"""Scalar networks: from components to the states they need and the equations these obey.
-
-`equations.network_of` derives them; it is imported where a model has components.
-"""
-
-from linegraph.network.network import Network, State
-
-__all__ = ["Network", "State"]

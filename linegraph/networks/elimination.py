@@ -1,0 +1,138 @@
+"""Linear equations solved over the DAG: pivots chosen by exact residues, every result a named step.
+
+Pivots of plus or minus one come first, so that only what is a resistive loop is ever divided by; then those
+in which a law is solved for a variable of its own edges, the diagonal: resistances make that positive
+definite, so that no size has to be looked at; among equals the one that fills least (Markowitz).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from linegraph.ir.dag import SYMBOL, Dag, Node
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    from linegraph.algebra.differentiation import Symbol
+    from linegraph.algebra.residues import Residues
+    from linegraph.algebra.scalar import Scalar
+
+
+@dataclass
+class Row:
+    """``Σ entries unknown + rest = 0``.
+
+    Attributes:
+        owner: whose law it is; its own variables are pivots rather than others.
+    """
+
+    entries: dict[Symbol, Scalar]
+    rest: Scalar
+    owner: str = ""
+
+
+@dataclass
+class Elimination:
+    """What elimination leaves.
+
+    Attributes:
+        values: the unknowns that were solved for, by those that were not.
+        pivots: what was divided by and is no number.
+        left: rows without unknowns: what their rest says must be zero.
+    """
+
+    values: dict[Symbol, Scalar] = field(default_factory=dict)
+    pivots: list[Scalar] = field(default_factory=list)
+    left: list[Scalar] = field(default_factory=list)
+    steps: list[tuple[Symbol, Row]] = field(default_factory=list)
+
+
+def eliminate(
+    rows: Sequence[Row], dag: Dag, residues: Residues, last: Collection[Symbol] = ()
+) -> Elimination:
+    """Solve rows for as many unknowns as they determine.
+
+    Args:
+        rows: linear equations.
+        dag: where to calculate.
+        residues: what is zero.
+        last: unknowns that are solved for only where nothing else can be.
+    """
+    found = Elimination()
+    open_rows = [_cleaned(row, residues) for row in rows]
+    while True:
+        choice = _pivot(open_rows, last)
+        if choice is None:
+            break
+        place, unknown = choice
+        pivot_row = open_rows.pop(place)
+        pivot = pivot_row.entries.pop(unknown)
+        if not _plain(pivot):
+            found.pivots.append(pivot)
+        scaled = Row(
+            {symbol: _over(entry, pivot) for symbol, entry in pivot_row.entries.items()},
+            _over(pivot_row.rest, pivot),
+        )
+        found.steps.append((unknown, scaled))
+        for row in open_rows:
+            factor = row.entries.pop(unknown, None)
+            if factor is not None:
+                _subtract(row, scaled, factor, residues)
+    found.left = [row.rest for row in open_rows]
+    for unknown, row in reversed(found.steps):
+        total = -row.rest
+        for symbol, entry in row.entries.items():
+            value = found.values[symbol] if symbol in found.values else dag.symbol(*symbol)
+            total = total - entry * value
+        found.values[unknown] = total
+    return found
+
+
+def _cleaned(row: Row, residues: Residues) -> Row:
+    return Row({s: e for s, e in row.entries.items() if residues(e)}, row.rest, row.owner)
+
+
+def _subtract(row: Row, scaled: Row, factor: Scalar, residues: Residues) -> None:
+    for symbol, entry in scaled.entries.items():
+        total = row.entries.get(symbol, 0) - factor * entry
+        if residues(total):
+            row.entries[symbol] = total
+        else:
+            row.entries.pop(symbol, None)
+    row.rest = row.rest - factor * scaled.rest
+
+
+def _pivot(rows: Sequence[Row], last: Collection[Symbol]) -> tuple[int, Symbol] | None:
+    """The next pivot: its row and its unknown."""
+    columns: dict[Symbol, int] = {}
+    for row in rows:
+        for symbol in row.entries:
+            columns[symbol] = columns.get(symbol, 0) + 1
+    best: tuple[tuple[int, bool, int, int, int], int, Symbol] | None = None
+    for place, row in enumerate(rows):
+        for symbol, entry in row.entries.items():
+            fill = (len(row.entries) - 1) * (columns[symbol] - 1)
+            grade = _grade(entry)
+            foreign = str(symbol[1]).partition(".")[0] != row.owner
+            cost = (min(grade, 1) + 10 * (symbol in last), foreign, fill, grade, place)
+            if best is None or cost < best[0]:
+                best = cost, place, symbol
+    return None if best is None else (best[1], best[2])
+
+
+def _grade(entry: Scalar) -> int:
+    if not isinstance(entry, Node):
+        return 0 if entry in (1, -1) else 1
+    return 2 if entry.op == SYMBOL else 3
+
+
+def _plain(x: Scalar) -> bool:
+    return not isinstance(x, Node)
+
+
+def _over(x: Scalar, pivot: Scalar) -> Scalar:
+    if not isinstance(pivot, Node) and pivot in (1, -1):
+        return x if pivot == 1 else -x
+    return x / pivot

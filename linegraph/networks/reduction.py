@@ -1,0 +1,151 @@
+"""States that constraints hidden in the equations fix: solved and differentiated until 𝓜 is regular."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from linegraph.algebra.differentiation import substitution
+from linegraph.algebra.residues import Residues, Span, rank
+from linegraph.errors import ModelError
+from linegraph.networks.elimination import Row, eliminate
+from linegraph.networks.network import RATE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from linegraph.algebra.differentiation import Calculus, Replay
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.networks.network import State
+    from linegraph.networks.rates import Rates
+
+
+class Reduction:
+    """Rows ``𝓜 ż = f`` of which some may follow from others."""
+
+    def __init__(
+        self,
+        rates: Rates,
+        calculus: Calculus,
+        states: Sequence[State],
+        owners: Sequence[int | None],
+    ) -> None:
+        """Nothing is fixed yet; `owners` are the states that rows stand for."""
+        self._owners = list(owners)
+        self._rates, self._states = rates, states
+        self._calculus, self._dag = calculus, calculus.dag
+        self._residues = Residues()
+
+    def reduce(self, rows: list[Scalar], variables: dict[str, tuple[Scalar, Scalar]]) -> set[int]:
+        """While 𝓜 is singular, its null combinations fix states: the places of those that are gone."""
+        gone: set[int] = set()
+        while True:
+            found = self._null(rows, gone)
+            if found is None:
+                self._ordered(rows, gone)
+                return gone
+            rest = found
+            place, value = self._fixed(rest, gone)
+            key = self._states[place].key
+            gone.add(place)
+            self._rates.replaced[key] = value
+            rate = self._rates.of(value)
+            replace = substitution(self._dag, {key: value, (RATE, place): rate})
+            kept = replace.all(rows)
+            rows[:] = self._independent(kept, gone)
+            for name, (x, y) in variables.items():
+                variables[name] = (replace(x), replace(y))
+
+    def _rate_row(self, row: Scalar, gone: set[int]) -> Row:
+        gradient = self._calculus.gradient(row)
+        entries = {s: slope for s, slope in gradient.items() if s[0] == RATE and s[1] not in gone}
+        rest = substitution(self._dag, dict.fromkeys(entries, 0))(row)
+        return Row(entries, rest)
+
+    def _null(self, rows: Sequence[Scalar], gone: set[int]) -> Scalar | None:
+        """What a null combination of 𝓜 says must be zero; None if 𝓜 is regular."""
+        if self._rank(rows, gone) == len(rows):
+            return None
+        found = eliminate([self._rate_row(r, gone) for r in rows], self._dag, self._residues)
+        return found.left[0]
+
+    def _rank(self, rows: Sequence[Scalar], gone: set[int]) -> int:
+        return rank(
+            [
+                {s: self._residues(e) for s, e in self._rate_row(row, gone).entries.items()}
+                for row in rows
+            ]
+        )
+
+    def _independent(self, rows: Sequence[Scalar], gone: set[int]) -> list[Scalar]:
+        """Drop the one row that follows from the others and what has been fixed."""
+        span, kept, dropped = Span(), [], False
+        owners, self._owners = self._owners, []
+        for k, row in enumerate(rows):
+            entries = self._rate_row(row, gone).entries
+            made = span.add({s: self._residues(e) for s, e in entries.items()}, k)
+            if made is None or dropped:
+                kept.append(row)
+                self._owners.append(owners[k])
+            else:
+                dropped = True
+        if not dropped:
+            self._owners.pop()
+        return kept if dropped else kept[:-1]
+
+    def _fixed(self, rest: Scalar, gone: set[int]) -> tuple[int, Scalar]:
+        """The state that a constraint fixes, and its value.
+
+        Raises:
+            ModelError: the constraint fixes none.
+        """
+        gradient = self._calculus.gradient(rest)
+        for place in reversed(range(len(self._states))):
+            key = self._states[place].key
+            slope = gradient.get(key)
+            if place in gone or slope is None or not self._residues(slope):
+                continue
+            if any(s in self._rates.places for s in self._calculus.support(slope)):
+                continue
+            value = substitution(self._dag, {key: 0})(rest)
+            return place, -value / slope
+        names = ", ".join(s.quantity.name for s in self._states)
+        problem = (
+            f"its states ({names}) are not determined: the laws contradict each other, or fix an input or "
+            "the motion of a joint"
+        )
+        raise ModelError(self._rates.who, problem)
+
+    @cached_property
+    def later(self) -> Replay:
+        """Put values in place of states that constraints have fixed."""
+        values = dict(self._rates.replaced)
+        for _ in values:
+            replace = substitution(self._dag, values)
+            values = {key: replace(x) for key, x in values.items()}
+        return substitution(self._dag, values)
+
+    def _ordered(self, rows: list[Scalar], gone: set[int]) -> None:
+        """Give each row the place of the state whose rate stands in it: 𝓜's diagonal is not zero."""
+        columns = [k for k in range(len(self._states)) if k not in gone]
+        entries = [{s[1] for s in self._calculus.support(row) if s[0] == RATE} for row in rows]
+        matched: dict[int, int] = {}
+
+        def augment(row: int, seen: set[int]) -> bool:
+            for column in sorted(entries[row]):
+                if column in seen or column not in columns:
+                    continue
+                seen.add(column)
+                if column not in matched or augment(matched[column], seen):
+                    matched[column] = row
+                    return True
+            return False
+
+        for row, owner in enumerate(self._owners):
+            if owner in entries[row] and owner in columns and owner not in matched:
+                matched[owner] = row
+        for row in range(len(rows)):
+            if row not in matched.values():
+                augment(row, set())
+        if len(matched) == len(rows):
+            rows[:] = [rows[matched[column]] for column in columns]

@@ -1,0 +1,1 @@
+"""The emitted Python loaded without a file (`functions`), and how things look in notebooks (`displays`)."""

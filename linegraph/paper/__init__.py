@@ -1,0 +1,1 @@
+"""The matrices of Boiadzhiev and Lilov, literally, to be compared with."""

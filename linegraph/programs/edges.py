@@ -1,0 +1,183 @@
+"""Emitted functions of the inverse scheme: every variable of every edge."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linegraph.dynamics.edge_quantities import (
+    across_groups,
+    across_quantities,
+    network_powers,
+    network_quantities,
+    powers,
+    reaction_axes,
+    reaction_groups,
+    reaction_quantities,
+)
+from linegraph.dynamics.outputs import observed
+from linegraph.ir.program import Argument, Call, Listing, Program, Quantity, Result, Routine, reads
+from linegraph.kinematics.state_layout import EFFORT_UNITS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.programs.workspace import Functions
+
+
+def across(f: Functions) -> tuple[Program | Routine, ...]:
+    """Velocity and angular velocity across every joint, body, element and constraint."""
+    entries = tuple(
+        x
+        for linear, angular in f.scheme.across().values()
+        for part in (linear, angular)
+        for x in part
+    )
+    entries += tuple(x for x, _ in f.scheme.network().values())
+    about = (
+        "Across variables: velocity and angular velocity of the head of every edge less its tail's"
+        f"{', then those of networks, tail over head' * (f.exchange is not None)}."
+    )
+    result = Result("X", (len(entries),), entries, "across variables, in ground axes")
+    if reads("a", (result,)):
+        return (_after_dynamics(f, "across", about, (result,)),)
+    return (f.program("across", about, ("q", "v"), (result,)),)
+
+
+_THROUGH = (
+    " Then what flows through every edge of networks; what they exert on joints and points is in power, and "
+    "in outputs where these ask for it."
+)
+
+
+def reactions(f: Functions) -> tuple[Program | Routine, ...]:
+    """What every joint and constraint exerts: from given accelerations, and from inputs."""
+    names = _joints(f)
+    entries: list[Scalar] = []
+    for name in names:
+        force, torque = f.scheme.reaction(name)
+        entries += [*force, *torque]
+    entries += [y for _, y in f.scheme.network().values()]
+    if not entries:
+        return ()
+    result = Result("R", (len(entries),), tuple(entries), "reactions")
+    given = ("q", "v", "a", "lam") if f.tree.closed else ("q", "v", "a")
+    about = (
+        "Reactions: the force and the torque, about the origin of its head frame, that every joint exerts on "
+        f"its head, efforts included, for given accelerations{' and multipliers' * f.tree.closed}."
+        f"{_THROUGH * (f.exchange is not None)}"
+    )
+    at = f.program("reactions_at", about, given, (result,))
+    arguments = ("q", "v", "u")
+    taken = tuple(Argument(x, f.sizes.get(x), f.texts[x]) for x in (*f.head, *arguments))
+    under = Routine(
+        "reactions",
+        "Reactions under the inputs u: forward dynamics, then reactions_at.",
+        taken,
+        (Result("R", result.shape, (), result.about),),
+        "after_dynamics",
+        (),
+        ("forward_dynamics", "reactions_at"),
+        (("then", "reactions_at"),),
+    )
+    return at, under
+
+
+def drives(f: Functions) -> tuple[Program | Routine, ...]:
+    """The driving forces of joints in prescribed motion."""
+    found = f.scheme.drives()
+    if not found:
+        return ()
+    result = Result("D", (len(found),), tuple(found.values()), "driving forces and torques")
+    about = "Driving forces: the effort that each prescribed coordinate takes, under the inputs u."
+    return (_after_dynamics(f, "drives", about, (result,)),)
+
+
+def power(f: Functions) -> tuple[Program | Routine, ...]:
+    """Through times across of every edge, and its sums."""
+    found, sums = powers(f.scheme.edges())
+    more, domains = network_powers(f.tree.network, f.scheme.network())
+    found |= more
+    sums = (*sums, *domains.values())
+    meaning = ", ".join(["translation", "rotation with levers", *domains])
+    results = (
+        Result("P", (len(found),), tuple(found.values()), "power that each edge delivers (W)"),
+        Result("sums", (len(sums),), sums, f"sums over {meaning}: zero (W)"),
+    )
+    about = (
+        "Power audit: through times across of every edge, and the sums that the principle of orthogonality "
+        "makes zero, a check at run time."
+    )
+    return (_after_dynamics(f, "power", about, results),)
+
+
+def outputs(f: Functions) -> tuple[Program | Routine, ...]:
+    """What the model asks for by name."""
+    if not f.model.outputs:
+        return ()
+    entries, dynamic = observed(f.model, f.tree, f.dag, f.values, f.chords, _state(f), f.scheme)
+    result = Result("y", (len(entries),), tuple(entries), "outputs")
+    dynamic = dynamic or reads("a", (result,))
+    about = "Outputs: the quantities that the model asks for by name."
+    if dynamic:
+        return (_after_dynamics(f, "outputs", about, (result,)),)
+    return (f.program("outputs", about, ("q", "v"), (result,)),)
+
+
+def listings(f: Functions, chosen: Sequence[str]) -> tuple[Listing, ...]:
+    """The names of everything these functions return."""
+    found = []
+    if "across" in chosen:
+        names = list(f.scheme.across())
+        heading = (
+            "across variables: of each edge velocity and angular velocity x, y, z, in ground axes"
+        )
+        more = network_quantities(f.model, f.tree.network, 0)
+        quantities = (*across_quantities(names), *more)
+        groups = (*across_groups(names), *((quantity, 1) for quantity in more))
+        heading += "; of edges of networks one" * bool(more)
+        found.append(Listing("across", "NX", heading, quantities, ("X",), groups))
+    more = network_quantities(f.model, f.tree.network, 1)
+    if "reactions" in chosen and (_joints(f) or more):
+        quantities = (*reaction_quantities(f.model, _joints(f)), *more)
+        groups = (*reaction_groups(_joints(f)), *((quantity, 1) for quantity in more))
+        axes = reaction_axes(f.model)
+        heading = f"reactions: of each joint force and torque x, y, z on its head, in {axes} axes"
+        heading += "; of edges of networks what flows through" * bool(more)
+        found.append(Listing("reaction", "NR", heading, quantities, ("R",), groups))
+    driven = f.scheme.drives() if "drives" in chosen else {}
+    if driven:
+        known = {q.name: q for joint in f.model.joints for q in joint.velocities()}
+        quantities = tuple(
+            Quantity(name, EFFORT_UNITS[known[name].unit], f"drives {name}") for name in driven
+        )
+        found.append(Listing("drive", "ND", "driving forces", quantities, ("D",)))
+    if "power" in chosen:
+        names = list(powers(f.scheme.edges())[0])
+        names += list(network_powers(f.tree.network, f.scheme.network())[0])
+        quantities = tuple(Quantity(name, "W", f"power of {name}") for name in names)
+        found.append(Listing("power", "NE", "powers", quantities, ("P",)))
+    if "outputs" in chosen and f.model.outputs:
+        quantities = tuple(
+            Quantity(o.name, o.unit, o.about or str(o.value)) for o in f.model.outputs
+        )
+        found.append(Listing("output", "NY", "outputs", quantities, ("y",)))
+    return tuple(found)
+
+
+def _joints(f: Functions) -> list[str]:
+    """Joints and constraints that have reactions."""
+    return list(f.tree.ends)
+
+
+def _state(f: Functions) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
+    return tuple(f.q), tuple(f.v)
+
+
+def _after_dynamics(f: Functions, name: str, about: str, results: tuple[Result, ...]) -> Program:
+    """A function that first solves for v̇ and λ."""
+    solved = [Argument("a", len(f.v), f.texts["a"])]
+    if f.tree.closed:
+        solved.append(Argument("lam", len(f.equations), f.texts["lam"]))
+    call = Call("forward_dynamics", (*f.head, "q", "v", "u"), tuple(solved))
+    return f.program(name, about, ("q", "v", "u"), results, (), (call,), status=True)

@@ -1,0 +1,28 @@
+"""Frames that are asked for by name, and what they are called in the names of emitted functions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linegraph.kinematics.frame_trees import NamedFrame, require_frame
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from linegraph.model.builder import Model
+
+
+def named_frames(model: Model, frames: Iterable[str]) -> list[NamedFrame]:
+    """Bodies and ``body.frame`` with their identifiers.
+
+    Raises:
+        ModelError: there is no such frame.
+        NameRefused: two are called alike.
+    """
+    from codegen import naming
+
+    names = list(dict.fromkeys((frames,) if isinstance(frames, str) else frames))
+    for name in names:
+        require_frame(model, name)
+    called = naming.identifiers(names, "frame", naming.stem)
+    return [NamedFrame(*pair) for pair in zip(called, names, strict=True)]

@@ -1,0 +1,208 @@
+"""Emitted functions for identification: the regressor, and the model's own standard parameters."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from linegraph.algebra.protocol import set_label
+from linegraph.algebra.residues import CONSTANT
+from linegraph.components.parameters import resolver
+from linegraph.components.scalar.forces import forces_of
+from linegraph.dynamics.applied_forces import Acting, depends_on_inputs
+from linegraph.dynamics.chords import Chords
+from linegraph.dynamics.network_state import RESTING
+from linegraph.identification.regressor import Columns, Station, by_motions, by_wrenches
+from linegraph.identification.standard_parameters import (
+    axes,
+    friction_values,
+    homes,
+    led_by,
+    link_values,
+    quantities,
+)
+from linegraph.identification.tied_columns import tied, ties
+from linegraph.ir.program import (
+    Argument,
+    Listing,
+    Program,
+    Result,
+    Routine,
+    assemble,
+    operations_of,
+)
+from linegraph.kinematics.links import compose, inverse
+from linegraph.kinematics.working_frames import DUST
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.identification.standard_parameters import Axis, Bearings
+    from linegraph.programs.workspace import Functions
+
+REGRESSOR, VALUES = "regressor", "inertial_parameters"
+COUNT = "NPI"
+
+
+def regressor_program(f: Functions) -> tuple[Program | Routine, ...]:
+    """Y of ``tau = Y pi``, and the rest of tau where there is one."""
+    if not f.tree.links:
+        return ()
+    split = _Split(f)
+    rows = split.rows()
+    entries = tuple(entry for row in rows for entry in row)
+    shape = (len(rows), len(rows[0]))
+    results = [Result("Y", shape, entries, "regressor: tau by each parameter of pi")]
+    rest = split.rest()
+    about = (
+        "Regressor Y(q, v, a) of inverse dynamics, tau = Y pi: pi are the standard parameters as "
+        f"{VALUES} lists them."
+    )
+    if any(x != 0 for x in rest):
+        text = "what of tau no parameter of pi makes"
+        results.append(Result("rest", (len(rest),), tuple(rest), text))
+        about = about.replace("tau = Y pi:", "tau = Y pi + rest:")
+    return (f.program(REGRESSOR, about, ("q", "v", "a"), tuple(results)),)
+
+
+def values_program(f: Functions) -> tuple[Program | Routine, ...]:
+    """The model's own pi."""
+    if not f.tree.links:
+        return ()
+    values = tuple(_Split(f).values())
+    about = (
+        "Standard parameters pi of the model's own numbers: of each link mass, first moment of mass and "
+        "inertia about the origin of its body, then damping, friction and rotor inertia of joints."
+    )
+    result = Result("pi", (len(values),), values, "standard parameters")
+    given = tuple(Argument("p", None, f.texts["p"]) for name in f.head if name == "p")
+    return (assemble(VALUES, about, given, (result,)),)
+
+
+def listings(f: Functions, chosen: Sequence[str]) -> tuple[Listing, ...]:
+    """The names of pi."""
+    if not f.tree.links or not {REGRESSOR, VALUES} & {*chosen}:
+        return ()
+    named = quantities(f.model, f.tree)
+    heading = "standard parameters of links and joints"
+    return (Listing("pi", COUNT, heading, named, ("pi",)),)
+
+
+class _Split:
+    """Inverse dynamics as a part that is linear in pi, and a rest."""
+
+    def __init__(self, f: Functions) -> None:
+        self._f = f
+        self._axes = axes(f.model, f.tree)
+        self._a = f.symbols("a")
+
+    def rows(self) -> list[list[Scalar]]:
+        """Y, a row for each velocity."""
+        f = self._f
+        count = 10 * len(f.tree.links)
+        rows: list[list[Scalar]] = [[0] * (count + 3 * len(self._axes)) for _ in range(len(f.v))]
+        for i, columns in enumerate(self._columns()):
+            for k, entries in columns.items():
+                rows[k][10 * i : 10 * i + 10] = entries
+        for n, axis in enumerate(self._axes):
+            set_label(f.dag, f"parameters of joint {axis.joint}")
+            rate = axis.rate(f.v)
+            width = resolver(f.dag, f.values)(axis.width)
+            units = (rate, f.dag.function("tanh", rate / width), axis.rate(self._a))
+            for freedom in axis.row:
+                for place, unit in enumerate(units, count + 3 * n):
+                    rows[freedom.index][place] = freedom.ratio * unit
+        return rows
+
+    def _columns(self) -> list[Columns]:
+        """By the route, in the frames (of the walk or the shortest) and with the sums that cost least."""
+        f = self._f
+        own = [home.pose for home in homes(f.tree)]
+        walk = [Station(i, pose) for i, pose in enumerate(own)]
+        short = f.shortened
+        there = [
+            Station(place, compose(inverse(moved), pose, DUST))
+            for pose, place, moved in zip(own, short.places, short.poses, strict=True)
+        ]
+        every = ties(f.derivation, f.tree, folded="p" not in f.head)
+        cheap = [tie for tie in every if tie.cheap]
+        found = []
+        for tree, crossed, stations in ((f.tree, f.arms, walk), (f.short, f.crossed, there)):
+            for route in (by_motions, by_wrenches):
+                columns = route(tree, f.dag, crossed, stations, self._a)
+                found += [columns, tied(columns, cheap), tied(columns, every)]
+        return min(found, key=_cost)
+
+    # -- values
+
+    @cached_property
+    def _bearings(self) -> Bearings:
+        """Friction of joints; springs, loads and the like beside it."""
+        f = self._f
+        passive = [e for e in f.model.force_elements if not depends_on_inputs(f.model, e.values())]
+        return friction_values(f.model, f.tree, f.dag, f.values, passive)
+
+    @cached_property
+    def _stored(self) -> tuple[dict[str, Scalar], list[tuple[int, int, Scalar]]]:
+        """What networks add to the mass matrix: rotor inertias of joints by name, all other entries."""
+        f = self._f
+        known = {axis.joint: axis for axis in self._axes}
+        armature: dict[str, Scalar] = dict.fromkeys(known, 0)
+        rest: list[tuple[int, int, Scalar]] = []
+        if f.exchange is None:
+            return armature, rest
+        network = f.exchange.network
+        first = len(network.states)
+        joints = {e.name: e.joint for e in forces_of(f.model.components)}
+        set_label(f.dag, "network, what it stores")
+        for (i, j), entry in network.mass.items():
+            value = f.exchange.still(entry)
+            kinds = {symbol[0] for symbol in network.laws.calculus.support(entry)}
+            if i == j >= first and kinds <= {"p", CONSTANT}:
+                seat = _seat(f, known, joints[network.ports[i - first].name])
+                if seat is not None:
+                    axis, ratio = seat
+                    armature[axis.joint] = armature[axis.joint] + ratio * ratio * value
+                    continue
+            for row, left in f.exchange.projected(i):
+                for column, right in f.exchange.projected(j):
+                    rest.append((row, column, left * right * value))
+        return armature, rest
+
+    def values(self) -> list[Scalar]:
+        """Pi of the model's own numbers."""
+        f = self._f
+        values = link_values(f.model, f.tree, f.dag, f.values)
+        for axis in self._axes:
+            found = (self._bearings.damping, self._bearings.friction, self._stored[0])
+            values += [part[axis.joint] for part in found]
+        return values
+
+    # -- what is no parameter
+
+    def rest(self) -> list[Scalar]:
+        """Of tau what springs, loads, networks and the like make."""
+        f = self._f
+        total: list[Scalar] = [0] * len(f.v)
+        others = [*self._bearings.others]
+        if others or f.tree.network is not None:
+            chords = Chords(f.tree, f.dag, f.arms, f.values)
+            state = (tuple(f.q), tuple(f.v))
+            acting = Acting(f.model, f.tree, f.dag, f.values, chords, state, RESTING)
+            found = acting.of([*others, *forces_of(f.model.components)])
+            total = [-x for x in f.along(found)]
+        for row, column, entry in self._stored[1]:
+            total[row] = total[row] + entry * self._a[column]
+        return total
+
+
+def _seat(f: Functions, known: dict[str, Axis], joint: str | None) -> tuple[Axis, Scalar] | None:
+    if joint is None:
+        return None
+    return (known[joint], 1) if joint in known else led_by(f.tree, known, joint)
+
+
+def _cost(columns: list[Columns]) -> int:
+    entries = tuple(x for found in columns for row in found.values() for x in row)
+    return operations_of((Result("Y", (len(entries),), entries, ""),))

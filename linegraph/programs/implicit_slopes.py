@@ -1,0 +1,75 @@
+"""Derivatives of the unknowns of a network's algebraic loop, by the implicit function theorem.
+
+What Newton's method solves is r(z, x) = 0, so that ``∂z/∂x = -K^-1 ∂r/∂x`` with K = ∂r/∂z.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linegraph.algebra.differentiation import Calculus
+from linegraph.errors import ModelError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from linegraph.algebra.differentiation import Gradient, Symbol
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.programs.workspace import Functions
+
+MOST = 3
+"""The most unknowns whose K is inverted in straight lines, by minors: which pivots are zero is not known."""
+
+
+def loop_slopes(f: Functions, chain: Mapping[Symbol, Gradient]) -> dict[Symbol, Gradient]:
+    """The derivatives of each unknown by what it depends on.
+
+    Args:
+        f: the functions of the model.
+        chain: the derivatives of symbols that are not independent.
+
+    Raises:
+        ModelError: the loop has more unknowns than `MOST`.
+    """
+    assert f.exchange is not None
+    network = f.exchange.network
+    if len(network.loop) > MOST:
+        problem = (
+            f"its network has an algebraic loop of {len(network.loop)} unknowns; derivatives are taken "
+            f"through loops of {MOST} at most"
+        )
+        raise ModelError(f'model "{f.model.name}"', problem)
+    calculus = Calculus(f.dag, ("loop",), chain)
+    slopes = [calculus.gradient(f.exchange.still(r)) for r in network.loop]
+    inverse = _inverse([[f.exchange.still(e) for e in row] for row in network.loop_jacobian])
+    found: dict[Symbol, Gradient] = {}
+    for i, row in enumerate(inverse):
+        total: Gradient = {}
+        for entry, slope in zip(row, slopes, strict=True):
+            for symbol, x in slope.items():
+                total[symbol] = total.get(symbol, 0) - entry * x
+        found["loop", i] = total
+    return found
+
+
+def _inverse(rows: Sequence[Sequence[Scalar]]) -> list[list[Scalar]]:
+    """By minors: defined wherever the matrix is regular."""
+    size = len(rows)
+    whole = _determinant(rows)
+
+    def entry(i: int, j: int) -> Scalar:
+        minor = [[x for k, x in enumerate(row) if k != i] for n, row in enumerate(rows) if n != j]
+        return (-1) ** (i + j) * _determinant(minor) / whole
+
+    return [[entry(i, j) for j in range(size)] for i in range(size)]
+
+
+def _determinant(rows: Sequence[Sequence[Scalar]]) -> Scalar:
+    if not rows:
+        return 1
+    total: Scalar = 0
+    for k, x in enumerate(rows[0]):
+        if x != 0:
+            minor = [[*row[:k], *row[k + 1 :]] for row in rows[1:]]
+            total = total + (-1) ** k * (x * _determinant(minor))
+    return total

@@ -1,0 +1,39 @@
+"""What the head of an emitted file says of a system with constraints."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linegraph.programs.loops import assembly
+
+if TYPE_CHECKING:
+    from linegraph.programs.workspace import Functions
+
+
+def remarks(f: Functions) -> tuple[str, ...]:
+    """What the head of a file says of a closed system."""
+    if not f.tree.closed:
+        return ()
+    found = assembly(f)
+    cut = ", ".join(dict.fromkeys(e.component for e in f.equations))
+    text = (
+        f"{len(f.equations)} constraints come from the chords of the tree ({cut}), "
+        "M vdot + h = Q + J^T lam with J vdot = gam; "
+        f"{found.rank} are independent: {freedoms_text(found.freedoms)}."
+    )
+    if f.tree.network is not None:
+        text += " With networks beside them they are not reduced to independent coordinates."
+    if found.redundant:
+        names = [
+            e.multiplier.name for e, one in zip(f.equations, found.unique, strict=True) if not one
+        ]
+        text += (
+            f" {found.redundant} are redundant: the motion is the same without them, but these multipliers, "
+            f"and the reactions that depend on them, are not unique: {', '.join(names)}."
+        )
+    return (text,)
+
+
+def freedoms_text(count: int) -> str:
+    """How many degrees of freedom there are, in words."""
+    return f"{count} degree{'' if count == 1 else 's'} of freedom"

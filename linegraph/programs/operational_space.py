@@ -1,0 +1,304 @@
+"""Emitted functions of operational space: the inertia that a frame has, and the forces that belong to it.
+
+With J the Jacobian of a frame and M v̇ + h = Q, a force F on the frame, Q = Jᵀ F, moves it by
+
+    Λ a + μ = F        Λ = (J M⁻¹ Jᵀ)⁻¹        μ = Λ (J M⁻¹ h - J̇ v)        J̄ = M⁻¹ Jᵀ Λ
+
+With M = Lᵀ D L and y = L⁻ᵀ r of each right-hand side, J M⁻¹ Jᵀ and J M⁻¹ h are products of the y, so that
+only the columns of J̄ are substituted back. With constraints all of this is said in independent velocities w,
+v = T w: J T stands for J, TᵀMT for M, and J̄ comes back to v by T.
+"""
+
+from __future__ import annotations
+
+import random
+from typing import TYPE_CHECKING, NamedTuple
+
+from linegraph.algebra.factorization import Factors, factored
+from linegraph.algebra.protocol import Floats
+from linegraph.components.parameters import resolver, sample_values
+from linegraph.dynamics.orthogonality import arms
+from linegraph.dynamics.regularity import SINGULAR, sample_tree
+from linegraph.errors import ModelError
+from linegraph.ir.dag import Node
+from linegraph.ir.program import Argument, Call, Check, Program, Result, Routine
+from linegraph.ir.statuses import counted
+from linegraph.kinematics.frame_trees import seat_of, tipped
+from linegraph.kinematics.twists import Outlook, columns, matrix
+from linegraph.programs import loops as closed_programs
+from linegraph.programs import pivots
+from linegraph.programs.kinematics import both, shortest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.kinematics.frame_trees import NamedFrame
+    from linegraph.programs.workspace import Functions
+
+BAR = "inverse of J, weighted by inertia"
+ROWS = {"operational_space": 6, "operational_position": 3}
+"""How many rows of the Jacobian count."""
+
+DIRECTIONS = ("along x", "along y", "along z", "about x", "about y", "about z")
+
+
+def operational_space(f: Functions) -> tuple[Program | Routine, ...]:
+    """Λ, μ and J̄ of all six rows of the Jacobian of each frame that can move in all directions."""
+    return _of_frames(f, "operational_space")
+
+
+def operational_position(f: Functions) -> tuple[Program | Routine, ...]:
+    """The same of the three linear rows: what an arm of few joints can move."""
+    return _of_frames(f, "operational_position")
+
+
+def remarks(f: Functions, chosen: Iterable[str]) -> tuple[str, ...]:
+    """What the head of a file says of frames that have not all functions that are asked for."""
+    chosen = set(chosen)
+    return tuple(
+        f'There is no {function} of the frame "{frame.name}": it {problem}.'
+        for function in ROWS
+        if function in chosen
+        for frame in f.frames
+        if (problem := _immobile(f, frame, ROWS[function]))
+    )
+
+
+def _of_frames(f: Functions, function: str) -> tuple[Program, ...]:
+    """One for each frame that can move so; the head of the file tells of the others.
+
+    Raises:
+        ModelError: none can, or the model has no such function.
+    """
+    if not f.frames:
+        return ()
+    dynamics = _closed(f, function) if f.tree.closed else _open(f, function)
+    problems = {frame: _immobile(f, frame, ROWS[function]) for frame in f.frames}
+    able = [frame for frame, problem in problems.items() if not problem]
+    if not able:
+        frame, problem = next(iter(problems.items()))
+        fewer = "; operational_position may do" * (function == "operational_space")
+        raise ModelError(f'frame "{frame.name}"', f"{problem}: no {function} of it{fewer}")
+    return tuple(_operational(f, frame, function, dynamics) for frame in able)
+
+
+class _Dynamics(NamedTuple):
+    """What a frame's inertia is made of: M v̇ + h = Q in coordinates without constraints.
+
+    Attributes:
+        places: those of the velocities in v.
+        mass, bias: M and h.
+        outward: the velocities from the root to the leaves.
+        calls: what computes M and h, and all velocities for those of these coordinates.
+        spread: T of v = T w where these w are not all of v, and what T w leaves of v̇.
+    """
+
+    places: Sequence[int]
+    mass: list[list[Scalar]]
+    bias: list[Scalar]
+    outward: Sequence[int]
+    calls: tuple[Call, ...]
+    spread: tuple[list[list[Scalar]], list[Scalar]] | None = None
+
+
+def _operational(f: Functions, frame: NamedFrame, function: str, dynamics: _Dynamics) -> Program:
+    rows = ROWS[function]
+    J, rate = _motion(f, frame, rows, dynamics)
+    size = len(dynamics.bias)
+    f.dag.label = "M = L^T D L from the leaves to the root"
+    factors = factored(dynamics.mass, dynamics.outward)
+    reduced = [factors.reduced(right) for right in (*J, dynamics.bias)]
+    scaled = [factors.scaled(y) for y in reduced]
+    f.dag.label = "J M^-1 J^T and its inverse"
+    products = [[_dot(a, b) for b in scaled] for a in reduced[:rows]]
+    inner = [row[:rows] for row in products]
+    # the rows of translation first: what is eliminated last depends on all others
+    last_first = range(rows)[::-1]
+    known = factored(inner, last_first)
+    lam = known.inverse()
+    f.dag.label = "forces that keep the frame's velocity"
+    pulls = [row[rows] - x for row, x in zip(products, rate, strict=True)]
+    mu = [_dot(row, pulls) for row in lam]
+    f.dag.label = "M^-1 J^T, back from the root to the leaves"
+    solved = [factors.substituted(x) for x in scaled[:rows]]
+    bar = [[_dot([x[k] for x in solved], row) for row in lam] for k in range(size)]
+    if dynamics.spread is not None:
+        bar = _product(dynamics.spread[0], bar)
+    results = (
+        Result("Lambda", (rows, rows), _flat(lam), f'inertia of "{frame.name}"'),
+        Result("mu", (rows,), tuple(mu), "the force on it under which its velocity stays"),
+        Result("Jbar", (len(f.v), rows), _flat(bar), BAR, ("NV", "")),
+    )
+    bounds = [pivots.bound(x, dynamics.mass[i][i]) for i, x in enumerate(factors.pivots)]
+    checks = (
+        *pivots.checks(f, factors.pivots, bounds, dynamics.places),
+        *_checks_of_frame(f, frame, known, inner),
+    )
+    given = [x for call in dynamics.calls for x in call.arguments if x not in f.head]
+    name = f"frame_{frame.identifier}_{function}"
+    about = _about(frame, rows, closed=f.tree.closed)
+    arguments = tuple(dict.fromkeys(given))
+    return f.program(name, about, arguments, results, checks, dynamics.calls, status=True)
+
+
+def _about(frame: NamedFrame, rows: int, *, closed: bool) -> str:
+    """What a function says of itself."""
+    what = "the frame" if rows == 6 else "the origin of the frame"
+    text = (
+        f'Operational space of {what} "{frame.name}": Lambda = (J M^-1 J^T)^-1, '
+        "mu = Lambda (J M^-1 h - Jdot_v), Jbar = M^-1 J^T Lambda; a force F on it has "
+        "Lambda a + mu = F."
+    )
+    loops = (
+        " All on the motions that the constraints allow: J stands for J T, M and h for Mr and hr."
+    )
+    return text + loops * closed
+
+
+def _motion(
+    f: Functions, frame: NamedFrame, rows: int, dynamics: _Dynamics
+) -> tuple[list[list[Scalar]], list[Scalar]]:
+    """J in the coordinates of `dynamics`, and the rate of the frame's velocity where these are constant."""
+    size = len(f.v)
+    keys = [(result, frame.identifier) for result in ("jacobian", "jacobian_dot_v")]
+    flat, rate = shortest(both(f, (frame,)), keys).values()
+    J = [list(flat[i * size : (i + 1) * size]) for i in range(rows)]
+    if dynamics.spread is None:
+        return J, list(rate[:rows])
+    T, rest = dynamics.spread
+    return _product(J, T), [x + _dot(row, rest) for x, row in zip(rate[:rows], J, strict=True)]
+
+
+def _open(f: Functions, function: str) -> _Dynamics:
+    """Of a tree: `equations`.
+
+    Raises:
+        ModelError: the mass matrix is not symmetric.
+    """
+    if not f.symmetric:
+        raise _refused(f, function, "its controlled sources make the mass matrix unsymmetric")
+    size = len(f.v)
+    local = (Argument("M", size * size, "mass matrix"), Argument("h", size, "bias"))
+    made = f.program("equations", "", ("q", "v"), (f.mass_matrix, f.bias_beside_mass))
+    call = Call("equations", tuple(argument.name for argument in made.arguments), local)
+    mass: list[list[Scalar]] = [
+        [f.dag.symbol("M", i * size + j) if used else 0 for j, used in enumerate(row)]
+        for i, row in enumerate(f.pattern)
+    ]
+    bias = _vector(f, "h", size)
+    return _Dynamics(range(size), mass, bias, f.tree.outward, (call,))
+
+
+def _closed(f: Functions, function: str) -> _Dynamics:
+    """With constraints: `reduction` and `reduced_equations`.
+
+    Raises:
+        ModelError: there are none, or too few independent velocities.
+    """
+    made = {program.name: program for program in closed_programs.reduction(f)}
+    if not made:
+        problem = "it has constraints, and its equations are not reduced to independent coordinates"
+        raise _refused(f, function, problem)
+    places = [v for _, v in closed_programs.independent(f)]
+    k, n, rows = len(places), len(f.v), ROWS[function]
+    if k < rows:
+        left = "1 independent velocity" if k == 1 else f"{k} independent velocities"
+        problem = f"its constraints leave {left}, fewer than the {rows} rows"
+        raise _refused(f, function, problem)
+    local = {
+        "reduction": (Argument("T", n * k, "v for unit w"), Argument("rest", n, "rest of vdot")),
+        "reduced_equations": (Argument("Mr", k * k, "mass matrix"), Argument("hr", k, "bias")),
+    }
+    calls = tuple(
+        Call(name, tuple(argument.name for argument in made[name].arguments), arrays)
+        for name, arrays in local.items()
+    )
+    spread = _matrix(f, "T", n, k), _vector(f, "rest", n)
+    mass, bias = _matrix(f, "Mr", k, k), _vector(f, "hr", k)
+    return _Dynamics(places, mass, bias, range(k), calls, spread)
+
+
+def _refused(f: Functions, function: str, problem: str) -> ModelError:
+    return ModelError(f'model "{f.model.name}"', f"{problem}: {function} cannot be emitted for it")
+
+
+def _checks_of_frame(
+    f: Functions, frame: NamedFrame, known: Factors, inner: list[list[Scalar]]
+) -> list[Check]:
+    checks = []
+    for i, pivot in enumerate(known.pivots):
+        if isinstance(pivot, Node):
+            bound = pivots.bound(pivot, inner[i][i])
+            about = f'the frame "{frame.name}" cannot move {DIRECTIONS[i]} by itself here'
+            name = f"IMMOBILE_{frame.identifier}_{DIRECTIONS[i].replace(' ', '_')}"
+            fraction = None if bound == 0 else SINGULAR
+            number = counted(len(f.v) + 6 * f.frames.index(frame) + i)
+            checks.append(Check(pivot, bound, number, about, name, fraction))
+    return checks
+
+
+def _immobile(f: Functions, frame: NamedFrame, rows: int) -> str:
+    """What to tell of a frame that nowhere can move in all directions, judged at random states; or nothing.
+
+    Named is the first direction that depends on those before it.
+    """
+    algebra = Floats(
+        t=f.model.bounds.sometime, u=[0.1 + 0.07 * i for i in range(len(f.tree.inputs))]
+    )
+    tree = sample_tree(f.model, f.derivation.formulation)
+    values = sample_values(f.model.parameters.values(), algebra)
+    seat = seat_of(f.model, tree, resolver(algebra, values), frame.name)
+    way = tipped(tree, [seat], masses=False)
+    failures: list[int] = []
+    for seed in (1, 2):
+        draw = random.Random(seed)
+        q = [draw.uniform(-1, 1) for _ in tree.positions]
+        tree.normalise(q)
+        rest = [0.0] * len(tree.velocities)
+        view = Outlook(way.tree, algebra, arms(way.tree, algebra, q, rest))
+        row = _dependent(matrix(columns(view, way.tips[0]), len(rest))[:rows])
+        if row is None:
+            return ""
+        failures.append(row)
+    return f"cannot move {DIRECTIONS[max(failures)]} by itself at any position"
+
+
+def _dependent(rows: Sequence[Sequence[float]]) -> int | None:
+    """The first row that depends on those before it; None if there is none."""
+    kept: list[list[float]] = []
+    for i, row in enumerate(rows):
+        rest = [float(x) for x in row]
+        for unit in (*kept, *kept):
+            along = _dot(rest, unit)
+            rest = [x - along * y for x, y in zip(rest, unit, strict=True)]
+        length = _dot(rest, rest) ** 0.5
+        if not length > 1e-9 * max(1e-9, _dot(row, row) ** 0.5):
+            return i
+        kept.append([x / length for x in rest])
+    return None
+
+
+def _dot(a: Sequence[Scalar], b: Sequence[Scalar]) -> Scalar:
+    found: Scalar = 0
+    for x, y in zip(a, b, strict=True):
+        found = found + x * y
+    return found
+
+
+def _product(a: Sequence[Sequence[Scalar]], b: Sequence[Sequence[Scalar]]) -> list[list[Scalar]]:
+    columns = list(zip(*b, strict=True))
+    return [[_dot(row, column) for column in columns] for row in a]
+
+
+def _matrix(f: Functions, name: str, rows: int, columns: int) -> list[list[Scalar]]:
+    """A local array of a program as rows."""
+    return [[f.dag.symbol(name, i * columns + j) for j in range(columns)] for i in range(rows)]
+
+
+def _vector(f: Functions, name: str, size: int) -> list[Scalar]:
+    return [f.dag.symbol(name, i) for i in range(size)]
+
+
+def _flat(rows: Sequence[Sequence[Scalar]]) -> tuple[Scalar, ...]:
+    return tuple(x for row in rows for x in row)

@@ -1,0 +1,368 @@
+"""Stage 5: the derivation run over the expression DAG, cut into the functions we promise."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from linegraph.algebra.factorization import Solution, solve
+from linegraph.dynamics import orthogonality
+from linegraph.dynamics.articulated import forward_dynamics
+from linegraph.dynamics.potentials import unknown
+from linegraph.dynamics.regularity import is_solid, sample_tree
+from linegraph.errors import ModelError
+from linegraph.ir.program import Argument, Call, Module, Program, Quantity, Result, Routine
+from linegraph.ir.prologue import COUNT, with_prologue
+from linegraph.ir.sums import with_sums_collected
+from linegraph.programs import derivatives as derivative_programs
+from linegraph.programs import division, pivots
+from linegraph.programs import edges as edge_programs
+from linegraph.programs import identification as parameter_programs
+from linegraph.programs import kinematics as kinematic_programs
+from linegraph.programs import loop_remarks as closed_remarks
+from linegraph.programs import loops as closed_programs
+from linegraph.programs import networks as network_programs
+from linegraph.programs import operational_space as operational_programs
+from linegraph.programs.workspace import ARGUMENTS, Functions
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.kinematics.frame_trees import NamedFrame
+    from linegraph.model.builder import Model
+    from linegraph.networks import Network
+    from linegraph.pipeline import Derivation
+    from linegraph.programs.division import Made
+
+
+def module_of(
+    derivation: Derivation,
+    name: str,
+    *,
+    folded: bool,
+    about: Iterable[str],
+    wanted: Iterable[str] = (),
+    only: Iterable[str] = (),
+    frames: Iterable[NamedFrame] = (),
+    prologue: bool = True,
+) -> Module:
+    """All functions of a model.
+
+    Args:
+        derivation: the model with its graph and its tree.
+        name: prefix of everything emitted; an identifier.
+        folded: whether parameters become numbers.
+        about: paragraphs for the head of the file.
+        wanted: further functions to emit, of `ON_REQUEST`.
+        only: nothing but these of `PROGRAMS`, those `wanted`, and what they call; all if there are none.
+        frames: the frames whose kinematics are to be emitted.
+        prologue: whether what parameters alone determine is hoisted into a function of its own.
+
+    Raises:
+        ModelError: a parameter has no value, a closed model cannot be assembled, or it has no function of
+            those asked for.
+    """
+    parameters = parameters_of(derivation)
+    wanted, only, frames = tuple(wanted), tuple(only), tuple(frames)
+    asked = _asked(wanted, only, frames)
+    functions = Functions(derivation, folded or not parameters, frames, asked)
+    made, omitted = _made(functions, [key for key in PROGRAMS if key in asked])
+    _require_made(derivation, dict.fromkeys((*only, *wanted)), made)
+    chosen = [key for key in PROGRAMS if key in made]
+    programs = tuple(program for key in chosen for program in made[key])
+    functions.dag.release()
+    hoisted = prologue and "p" in functions.head
+    programs, constants = with_prologue(programs) if hoisted else (with_sums_collected(programs), 0)
+    tree = functions.tree
+    closed = closed_programs.listings(functions) if tree.closed else ()
+    whole = (network_programs.state_listing(tree),) if "rhs" in chosen else ()
+    return Module(
+        name=name,
+        about=(
+            *about,
+            *closed_remarks.remarks(functions),
+            *network_programs.remarks(functions),
+            *operational_programs.remarks(functions, chosen),
+            *division.remarks(functions, omitted),
+        ),
+        positions=tree.positions,
+        velocities=tree.velocities,
+        inputs=tree.inputs,
+        parameters=() if folded else parameters,
+        time=derivation.model.depends_on_time,
+        programs=programs,
+        listings=(
+            *whole,
+            *closed,
+            *edge_programs.listings(functions, chosen),
+            *parameter_programs.listings(functions, chosen),
+            *derivative_programs.listings(functions, chosen),
+        ),
+        counts=(
+            *(closed_programs.counts(functions) if tree.closed else ()),
+            *([(COUNT, constants)] if constants else []),
+            *derivative_programs.counts(functions, chosen),
+        ),
+        omitted=omitted,
+    )
+
+
+def _require_made(derivation: Derivation, keys: Iterable[str], made: Mapping[str, Made]) -> None:
+    """Refuse what is asked for by name and is not made.
+
+    Raises:
+        ModelError: some of it divides by M, which is singular; or the model has no such function.
+    """
+    keys = list(keys)
+    divided = [key for key in keys if key not in made]
+    if divided:
+        raise derivation.no_inverse(divided)
+    for key in keys:
+        if not made[key]:
+            frame = "; name a frame (--frame)" * (key in OF_FRAMES)
+            problem = f"is none of this model: it has nothing of the kind{frame}"
+            raise ModelError(f'function "{key}"', problem)
+
+
+def _asked(
+    wanted: tuple[str, ...], only: tuple[str, ...], frames: tuple[NamedFrame, ...]
+) -> tuple[str, ...]:
+    """The keys of `PROGRAMS` that are asked for."""
+    if not only:
+        asked = (*(set(PROGRAMS) - set(ON_REQUEST)), *wanted)
+        return (*asked, *kinematic_programs.besides(asked, frames))
+    asked = (*only, *wanted)
+    if frames and not {"kinematics", *OF_FRAMES} & set(asked):
+        problem = f"nothing of it is asked for: {', '.join(OF_FRAMES)} or kinematics would be"
+        raise ModelError(f'frame "{frames[0].name}"', problem)
+    return asked
+
+
+def _made(functions: Functions, keys: Iterable[str]) -> tuple[dict[str, Made], tuple[str, ...]]:
+    """What each of some keys of `PROGRAMS` makes, and those that make what these call; and what is left out.
+
+    A key of which nothing is left is none of those made.
+    """
+    keys = list(keys)
+    barred = division.barred(functions)
+    made = {key: PROGRAMS[key](functions) for key in keys if key not in barred}
+    omitted = [key for key in keys if key in barred]
+    while True:
+        programs = [program for found in made.values() for program in found]
+        called = {name for program in programs for name in division.called(program)}
+        missing = called - {program.name for program in programs}
+        if not missing:
+            return made, tuple(dict.fromkeys(omitted))
+        if barred & missing:
+            made, lost = division.without(made, barred)
+            omitted += lost
+            barred |= {*lost, *(key for key in keys if key not in made)}
+            continue
+        others = [key for key in PROGRAMS if key not in made and key not in (*ON_REQUEST, *barred)]
+        for key in [key for key in others if key in missing] or others:
+            found = PROGRAMS[key](functions)
+            if missing & {program.name for program in found}:
+                made[key] = found
+                break
+
+
+def _mass_matrix(f: Functions) -> Program:
+    return f.program("mass_matrix", "Mass matrix M(q).", ("q",), (f.mass_matrix,))
+
+
+def _bias(f: Functions) -> Program:
+    about = "Bias h(q, v): gravity, Coriolis and centrifugal terms."
+    return f.program("bias", about, ("q", "v"), (f.bias,))
+
+
+def _equations(f: Functions) -> Program:
+    about = "Mass matrix M(q) and bias h(q, v) at once, sharing work."
+    return f.program("equations", about, ("q", "v"), (f.mass_matrix, f.bias_beside_mass))
+
+
+def _inverse_dynamics(f: Functions) -> Program:
+    tau = f.inverse_dynamics
+    result = Result("tau", (len(tau),), tuple(tau), "generalised forces along v")
+    about = "Inverse dynamics tau = M(q) a + h(q, v), without forming M."
+    return f.program("inverse_dynamics", about, ("q", "v", "a"), (result,))
+
+
+def _forward_dynamics(f: Functions) -> Program:
+    """By factored mass matrix or by articulated inertias, whichever takes fewer operations.
+
+    With solid bodies M cannot become singular, so articulated inertias need no scale to judge pivots by;
+    where some link is not solid for the parameters' own values, the factors do the judging.
+    """
+    solid = all(map(is_solid, sample_tree(f.model, f.derivation.formulation).links))
+    if f.armatures is None or f.tree.coupled or f.tree.levelled or not solid:
+        return _factored(f)
+    articulated = _articulated(f)
+    if not f.tree.links or articulated.operations < _factored_cost(f):
+        return articulated
+    return _factored(f)
+
+
+def _articulated(f: Functions) -> Program:
+    """Links by articulated inertias, networks beside them by their own part of the mass matrix."""
+    total = [effort + load for effort, load in zip(f.driving, f.along(f.carried), strict=True)]
+    solution = forward_dynamics(f.short, f.dag, f.crossed, total, f.armatures or {})
+    first, size = f.tree.layout.mechanical, len(f.v) - f.tree.layout.mechanical
+    rows: list[list[Scalar]] = [[0] * size for _ in range(size)]
+    for i, j, entry in f.entries:
+        if i >= first:
+            rows[i - first][j - first] = rows[i - first][j - first] + entry
+    f.dag.label = "network, rates of its states"
+    beside = solve(rows, total[first:], range(size), symmetric=f.symmetric)
+    whole = Solution(
+        [*solution.unknowns[:first], *beside.unknowns],
+        [*solution.pivots[:first], *beside.pivots],
+    )
+    bounds: list[Scalar] = [0] * first
+    bounds += [pivots.bound(pivot, rows[k][k]) for k, pivot in enumerate(beside.pivots)]
+    return _solved(f, whole, bounds, ())
+
+
+def _factored(f: Functions) -> Program:
+    """Call `equations` for M and h, then M = L^T D L in straight lines.
+
+    Where h and Q cannot be added without losing digits, only M is called for.
+    """
+    size = len(f.v)
+    f.dag.label = "right-hand side Q - h"
+    held = [f.dag.symbol("h", i) for i in range(size)] if f.affine else f.held
+    right = [effort - h for effort, h in zip(f.driving, held, strict=True)]
+    f.dag.label = "M = L^T D L from the leaves to the root, then back"
+    rows = [
+        [f.dag.symbol("M", i * size + j) if used else 0 for j, used in enumerate(row)]
+        for i, row in enumerate(f.pattern)
+    ]
+    solution = solve(rows, right, f.tree.outward, symmetric=f.symmetric)
+    local = (Argument("M", size * size, "mass matrix"), Argument("h", size, "bias vector"))
+    called = _equations(f) if f.affine else _mass_matrix(f)
+    names = tuple(argument.name for argument in called.arguments)
+    bounds = [pivots.bound(pivot, rows[i][i]) for i, pivot in enumerate(solution.pivots)]
+    call = Call(called.name, names, local[: len(called.results)])
+    return _solved(f, solution, bounds, (call,))
+
+
+def _factored_cost(f: Functions) -> int:
+    """Operations of `equations` and of what `_factored` adds: p(p+1) + 5p + 3 for p couplings inward."""
+    place = {k: n for n, k in enumerate(f.tree.outward)}
+    inward = [
+        sum(used and place[j] < place[i] for j, used in enumerate(row))
+        for i, row in enumerate(f.pattern)
+    ]
+    return _equations(f).operations + sum(p * (p + 1) + 5 * p + 3 for p in inward)
+
+
+def _solved(
+    f: Functions, solution: Solution, bounds: list[Scalar], calls: tuple[Call, ...]
+) -> Program:
+    accelerations = tuple(solution.unknowns)
+    result = Result("a", (len(accelerations),), accelerations, ARGUMENTS["a"])
+    about = "Forward dynamics a = M(q)^-1 (Q(u) - h(q, v))."
+    given = ("q", "v", "u")
+    checks = pivots.checks(f, solution.pivots, bounds) + network_programs.checks(f)
+    return f.program("forward_dynamics", about, given, (result,), checks, calls, status=True)
+
+
+def _coordinate_rates(f: Functions) -> Program:
+    rates = orthogonality.coordinate_rates(f.tree, f.dag, f.q, f.v)
+    result = Result("qdot", (len(rates),), tuple(rates), "derivatives of q")
+    about = "Coordinate rates qdot = N(q) v."
+    return f.program("coordinate_rates", about, ("q", "v"), (result,))
+
+
+def energy_remark(model: Model, network: Network | None) -> str:
+    """Which elements and components store energy that is not known, and why."""
+    found = [f"{who} ({why})" for who, why in unknown(model).items()]
+    if network is not None:
+        names = [b.component for b in network.branches if b.component.name in network.unknown]
+        found += [f"{c.kind} {c.name}" for c in dict.fromkeys(names)]
+    return f" Not known, and left out: the energy of {'; '.join(found)}." if found else ""
+
+
+def _energy(f: Functions) -> Program:
+    crossed = orthogonality.arms(f.tree, f.dag, f.q, f.v)
+    kinetic, potential = orthogonality.energy(f.tree, f.dag, crossed)
+    stored = potential + f.passive.potential
+    about = (
+        "Kinetic and potential energy (gravity and springs) of all that moves; that of gravity is zero "
+        "at the origin of ground."
+    )
+    entries: tuple[Scalar, ...] = (kinetic, stored)
+    if f.exchange is not None:
+        entries = (*entries, f.exchange.energy())
+        about += " The third is what scalar networks store, heat left out."
+    about += energy_remark(f.model, f.tree.network)
+    result = Result("E", (len(entries),), entries, "kinetic and potential energy (J)")
+    return f.program("energy", about, ("q", "v"), (result,))
+
+
+Maker = Callable[[Functions], tuple[Program | Routine, ...]]
+
+PROGRAMS: dict[str, Maker] = {
+    "algebraic_loop": network_programs.algebraic_loop,
+    "mass_matrix": lambda f: (_mass_matrix(f),),
+    "bias": lambda f: (_bias(f),),
+    "equations": lambda f: (_equations(f),),
+    "inverse_dynamics": lambda f: (_inverse_dynamics(f),),
+    "constraints": closed_programs.constraints,
+    "forward_dynamics": lambda f: (
+        closed_programs.forward_dynamics(f) if f.tree.closed else (_forward_dynamics(f),)
+    ),
+    "coordinate_rates": lambda f: (_coordinate_rates(f),),
+    "energy": lambda f: (_energy(f),),
+    "rhs": network_programs.rhs,
+    "project": closed_programs.project,
+    "reduction": closed_programs.reduction,
+    "across": edge_programs.across,
+    "reactions": edge_programs.reactions,
+    "drives": edge_programs.drives,
+    "power": edge_programs.power,
+    "outputs": edge_programs.outputs,
+    "linearize": derivative_programs.linearize,
+    "inverse_dynamics_derivatives": derivative_programs.inverse_dynamics,
+    "forward_dynamics_derivatives": derivative_programs.forward_dynamics,
+    "inverse_dynamics_parameter_derivatives": derivative_programs.inverse_dynamics_by_parameters,
+    "forward_dynamics_parameter_derivatives": derivative_programs.forward_dynamics_by_parameters,
+    "frames": kinematic_programs.frames,
+    **{key: kinematic_programs.whole(key) for key in kinematic_programs.WHOLE},
+    "kinematics": kinematic_programs.kinematics,
+    "operational_space": operational_programs.operational_space,
+    "operational_position": operational_programs.operational_position,
+    "regressor": parameter_programs.regressor_program,
+    "inertial_parameters": parameter_programs.values_program,
+}
+"""The register of emitted functions, in emitted order: what a user may ask for, and what makes them."""
+
+OF_FRAMES = ("frames", "operational_space", "operational_position")
+"""What there is of frames only."""
+
+ON_REQUEST = (
+    "power",
+    "linearize",
+    "inverse_dynamics_derivatives",
+    "forward_dynamics_derivatives",
+    "inverse_dynamics_parameter_derivatives",
+    "forward_dynamics_parameter_derivatives",
+    *OF_FRAMES,
+    *kinematic_programs.WHOLE,
+    "kinematics",
+    "regressor",
+    "inertial_parameters",
+)
+"""Emitted only where they are asked for."""
+
+
+def parameters_of(derivation: Derivation) -> tuple[Quantity, ...]:
+    """The independent parameters; derived ones are computed from them."""
+    found = []
+    for p in derivation.model.parameters.values():
+        if p.derived:
+            continue
+        if p.value is None:
+            raise ModelError(f'parameter "{p.name}"', "has no value, so no default can be emitted")
+        found.append(Quantity(p.name, p.unit, p.about, float(p.value)))
+    return tuple(found)

@@ -1,0 +1,153 @@
+"""The trees a model may be derived with, and what each costs: `linegraph trees`.
+
+Of a loop any joint may be cut. The candidates are the automatic tree, those that differ from it by another
+cut in one loop, and absolute coordinates and absolute angles for all bodies.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from linegraph.components.joints import Compound
+from linegraph.errors import ModelError
+from linegraph.ir.program import Program
+from linegraph.model.choices import ABSOLUTE, ABSOLUTE_ANGLE
+from linegraph.pipeline import Derivation, derive, placed, variant
+from linegraph.programs.register import module_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from linegraph.model.builder import Model
+
+MOST = 24
+"""Candidates that are looked at."""
+
+MOST_NAMED = 5
+"""Of more chords than this only the number is told."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A tree and what it costs.
+
+    Attributes:
+        choices: what `Model.formulation` takes for it.
+        cut: the joints and constraints that are chords.
+        coordinates: the number of velocities.
+        constraints: the number of constraints.
+        operations: of everything forward dynamics needs: M, h, J and γ; or M and h without loops.
+        chosen: whether it is the one the model is derived with.
+    """
+
+    choices: dict[str, Any]
+    cut: tuple[str, ...]
+    coordinates: int
+    constraints: int
+    operations: int
+    chosen: bool
+
+    @property
+    def name(self) -> str:
+        """What a user would write for it."""
+        if "coordinates" in self.choices:
+            return f'coordinates = "{self.choices["coordinates"]}"'
+        branches = ", ".join(f'"{name}"' for name in self.choices["tree"])
+        return f"tree = [{branches}]" if self.cut else "the only tree of joints"
+
+
+def candidates(model: Model, tell: Callable[[str], None] | None = None) -> list[Candidate]:
+    """The sensible trees, cheapest first; of equal cost the one the model has, then as found.
+
+    Raises:
+        ModelError: the model itself cannot be derived, or there is no equation of motion in any of them.
+    """
+    own = derive(model)
+    found: dict[tuple[Any, ...], Candidate] = {}
+    refused: ModelError | None = None
+    for choices in _choices(model, own):
+        if len(found) == MOST:
+            break
+        if tell is not None:
+            tell(f"tree {len(found) + 1}")
+        twin = variant(model, **choices)
+        try:
+            derivation = own if _same(own, choices) else derive(twin)
+            tree = derivation.formulation
+            key = (tree.joints, tree.absolute, tuple(tree.level))
+            if key not in found:
+                found[key] = _judged(derivation, choices, derivation is own)
+        except ModelError as error:
+            # a joint that cannot be cut, a tree that cannot be assembled, a law that needs a coordinate
+            refused = refused or error
+    if refused is not None and not found:
+        raise placed(refused, model)
+    return sorted(found.values(), key=lambda c: (c.operations, c.coordinates, not c.chosen))
+
+
+def _same(own: Derivation, choices: dict[str, Any]) -> bool:
+    """Whether choices are those the model is derived with."""
+    if "coordinates" in choices or own.formulation.absolute or own.formulation.level:
+        return False
+    return set(choices["tree"]) == set(_moving(own))
+
+
+def _choices(model: Model, own: Derivation) -> Iterator[dict[str, Any]]:
+    """The automatic tree, its neighbours, and the trees of inertia edges."""
+    base = own if not (own.formulation.absolute or own.formulation.level) else _joints_only(model)
+    branches = _moving(base)
+    yield {"tree": branches}
+    compound = {joint.name for joint in model.joints if isinstance(joint, Compound)}
+    for chord in base.formulation.chords:
+        for other in base.circuit_of(chord)[:-1]:
+            if other in branches and other not in compound:
+                yield {"tree": tuple(chord if name == other else name for name in branches)}
+    yield {"coordinates": ABSOLUTE_ANGLE}
+    yield {"coordinates": ABSOLUTE}
+
+
+def _joints_only(model: Model) -> Derivation:
+    return derive(variant(model))
+
+
+def _moving(derivation: Derivation) -> tuple[str, ...]:
+    """The joints that are branches, in declared order."""
+    joints = derivation.model.joints
+    return tuple(j.name for j in joints if j.name in derivation.formulation.joints)
+
+
+def _judged(derivation: Derivation, choices: dict[str, Any], chosen: bool) -> Candidate:
+    """The cost of a tree."""
+    module = module_of(
+        derivation,
+        "counted",
+        folded=False,
+        about=(),
+        only=("constraints", "equations") if derivation.structure.closed else ("equations",),
+        prologue=False,
+    )
+    programs = {p.name: p for p in module.programs if isinstance(p, Program)}
+    whole = programs.get("constrained_equations", programs["equations"])
+    tree = derivation.structure
+    held = (c.component.name for c in tree.closures if c.restrictions or c.drive)
+    others = (c.name for c in derivation.model.constraints)
+    cut = tuple(dict.fromkeys([*held, *others]))
+    count = len(derivation.assembled.unique) if tree.closed else 0
+    return Candidate(choices, cut, len(tree.velocities), count, whole.operations, chosen)
+
+
+def table(found: list[Candidate]) -> str:
+    """The candidates for a reader."""
+    rows = [("operations", "velocities", "constraints", "cut", "")]
+    for c in found:
+        name = f"{c.name}{'   (this model)' * c.chosen}"
+        cut = ", ".join(c.cut) if len(c.cut) <= MOST_NAMED else f"{len(c.cut)} joints"
+        cut = cut or "-"
+        rows.append((str(c.operations), str(c.coordinates), str(c.constraints), cut, name))
+    widths = [max(len(row[k]) for row in rows) for k in range(4)]
+    lines = []
+    for row in rows:
+        numbers = [cell.rjust(width) for cell, width in zip(row[:3], widths, strict=False)]
+        lines.append("  ".join([*numbers, row[3].ljust(widths[3]), row[4]]).rstrip() + "\n")
+    return "".join(lines)

@@ -1,0 +1,199 @@
+"""Kinds of values of components: vertices, windings, matrices, equations; and the tables of components.
+
+The tables follow from the dataclasses in the register, as those of joints and elements do.
+"""
+
+from __future__ import annotations
+
+from dataclasses import MISSING, dataclass, fields
+from typing import TYPE_CHECKING, Any
+
+from linegraph.components.domains import DOMAINS, SPATIAL
+from linegraph.components.scalar import COMPONENTS
+from linegraph.components.scalar.base import ACROSS, THROUGH, Component
+from linegraph.components.scalar.element import Equation
+from linegraph.readers.modelfile.expressions import Scope, read_expression
+from linegraph.readers.modelfile.fields import Field, Table
+from linegraph.readers.modelfile.kinds import (
+    WRONG,
+    Ends,
+    Flag,
+    Items,
+    JointName,
+    Number,
+    Schema,
+    Text,
+    Word,
+    said,
+)
+from linegraph.readers.modelfile.names import name_problem
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from linegraph.readers.modelfile.expressions import Names
+    from linegraph.readers.modelfile.kinds import Kind
+    from linegraph.readers.modelfile.report import Spot
+
+MOST_ENTRIES = 100
+
+
+@dataclass(frozen=True)
+class Vertex:
+    """A vertex of a network: any name; "ground" is the reference."""
+
+    def read(self, value: Any, spot: Spot, names: Names) -> Any:
+        """Its name."""
+        problem = (
+            "" if isinstance(value, str) else f"the name of a vertex is wanted, not {said(value)}"
+        )
+        problem = problem or name_problem(value, dots=True)
+        if problem:
+            spot.error(problem)
+        return WRONG if problem else value
+
+    def schema(self) -> Schema:
+        """A string."""
+        return {"type": "string", "minLength": 1}
+
+
+@dataclass(frozen=True)
+class Domain:
+    """A scalar subspace."""
+
+    def read(self, value: Any, spot: Spot, names: Names) -> Any:
+        """Its name."""
+        known = [*(name for name in DOMAINS if name not in SPATIAL), *sorted(names.domains)]
+        if isinstance(value, str) and value in known:
+            return value
+        hint = spot.report.hint(value, known) if isinstance(value, str) else ""
+        spot.error(f"a domain is wanted ({', '.join(known)}), not {said(value)}{hint}")
+        return WRONG
+
+    def schema(self) -> Schema:
+        """A string: files may add domains of their own."""
+        return {"type": "string"}
+
+
+@dataclass(frozen=True)
+class Several:
+    """A list of one kind, of any length but none.
+
+    Attributes:
+        kind: of each.
+        what: what is wanted.
+    """
+
+    kind: Kind
+    what: str
+
+    def read(self, value: Any, spot: Spot, names: Names) -> Any:
+        """A tuple."""
+        if not isinstance(value, list) or not 0 < len(value) <= MOST_ENTRIES:
+            spot.error(f"{self.what} is wanted, not {said(value)}")
+            return WRONG
+        found = tuple(self.kind.read(item, spot.at(i), names) for i, item in enumerate(value))
+        return WRONG if any(item is WRONG for item in found) else found
+
+    def schema(self) -> Schema:
+        """An array."""
+        return {"type": "array", "items": self.kind.schema(), "minItems": 1}
+
+
+@dataclass(frozen=True)
+class Law:
+    """An equation in quotes.
+
+    Attributes:
+        own: what it may name of the component.
+    """
+
+    own: tuple[str, ...]
+
+    def read(self, value: Any, spot: Spot, names: Names) -> Any:
+        """Both its sides."""
+        if not isinstance(value, str) or value.count("=") != 1:
+            spot.error(f'an equation such as "y = f(x)" is wanted, not {said(value)}')
+            return WRONG
+        sides = [
+            read_expression(side, Scope.NETWORK, spot, names, self.own) for side in value.split("=")
+        ]
+        left, right = sides
+        return WRONG if left is None or right is None else Equation(left, right)
+
+    def schema(self) -> Schema:
+        """A string."""
+        return {"type": "string", "pattern": "^[^=]+=[^=]+$"}
+
+
+_VERTICES = Items(Vertex(), 2, "[tail, head], two vertices,")
+_PLACED: Mapping[str, Kind] = {
+    "between": _VERTICES,
+    "second": _VERTICES,
+    "output": _VERTICES,
+    "shaft": _VERTICES,
+    "points": Ends(),
+    "joint": JointName(),
+    "windings": Several(_VERTICES, "a list of windings, each [tail, head],"),
+    "of": Several(Vertex(), "a list of names of components or force elements"),
+    "domain": Domain(),
+    "domains": Items(Domain(), 2, "a list of two domains"),
+    "keeps": Word((ACROSS, THROUGH)),
+}
+"""What fields hold that have one meaning in all components."""
+
+
+def component_table(name: str, abouts: Callable[[type], dict[str, str]]) -> Table:
+    """The table of a component type; `abouts` says what a dataclass tells of its fields."""
+    kind = COMPONENTS[name]
+    told = abouts(kind)
+    required = {*kind.required, "between", "second", "output", "windings", "of"}
+    entries = {
+        f.name: Field(
+            _kind_of(kind, f.name, str(f.type)),
+            told.get(f.name, "").rstrip("."),
+            f.name in required and (f.default is MISSING or f.name in kind.required),
+        )
+        for f in fields(kind)
+        if f.name != "name"
+    }
+    if name == "element":
+        entries["domain"] = Field(Domain(), told["domain"].rstrip("."), True)
+    groups = kind.needs
+    places = tuple(key for key in ("joint", "points", "shaft") if key in entries)
+    if places:
+        groups = (*groups, places)
+    about = (kind.__doc__ or "").strip().split("\n")[0]
+    return Table(entries, groups, groups, about)
+
+
+def _kind_of(kind: type[Component], key: str, annotation: str) -> Kind:
+    own = kind.own.get(key, ())
+    if key in _PLACED:
+        return _PLACED[key]
+    if kind.kind == "element":
+        names = ("x", "y", "s")
+        return Law(names) if key == "law" else Number(Scope.NETWORK, own=names)
+    number = Number(Scope.NETWORK, own=own)
+    if annotation == "tuple[tuple[Any, ...], ...]":
+        return Several(Several(number, "a row of the matrix, a list,"), "a matrix, a list of rows,")
+    if annotation.startswith("tuple[Any, ...]"):
+        return Several(number, "a list of numbers or expressions")
+    return number
+
+
+VARIABLE = Table(
+    {
+        "name": Field(Text(), "what it is called", True),
+        "unit": Field(Text(), "its unit, such as Pa or m^3/s", True),
+        "letter": Field(Text(8), "what names of states begin with", True),
+    }
+)
+DOMAIN = Table(
+    {
+        "across": Field(VARIABLE, "the variable measured between the ends of an edge", True),
+        "through": Field(VARIABLE, "the variable that flows along an edge", True),
+        "power": Field(Flag(), "whether through times across is a power; true if left out"),
+    },
+    about="a power subspace of the file's own",
+)

@@ -1,0 +1,54 @@
+"""The language as a JSON Schema, for editors that complete and check while one types.
+
+It is made from the same tables that the reader checks by; ``python -m linegraph.modelfile.schema`` writes
+the copy that is shipped.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from linegraph.readers.modelfile.expressions import Scope
+from linegraph.readers.modelfile.kinds import Number
+from linegraph.readers.modelfile.tables import FLAT, HEAD, INPUT, OUTPUT, PARAMETER, TYPES
+
+PATH = Path(__file__).with_name("schema.json")
+DRAFT = "http://json-schema.org/draft-07/schema#"
+"""The newest that editors for TOML understand."""
+
+
+def schema() -> dict[str, Any]:
+    """The schema of a model file."""
+    properties: dict[str, Any] = {
+        key: {"description": entry.about, **entry.kind.schema()} for key, entry in HEAD.items()
+    }
+    parameter = {"anyOf": [*Number().schema()["anyOf"], PARAMETER.schema()]}
+    properties["parameters"] = _named(parameter, "numbers that stay symbols")
+    output = {"anyOf": [*Number(Scope.OUTPUT).schema()["anyOf"], OUTPUT.schema()]}
+    properties["outputs"] = _named(output, "what the emitted code returns by name")
+    properties["inputs"] = _named(INPUT.schema(), "numbers known at run time")
+    properties |= {key: table.schema() for key, table in FLAT.items() if table is not None}
+    properties |= {key: _named(table.schema(), table.about) for key, table in TYPES.items()}
+    return {
+        "$schema": DRAFT,
+        "title": "linegraph model",
+        "type": "object",
+        "properties": properties,
+        "additionalProperties": False,
+    }
+
+
+def _named(inner: dict[str, Any], about: str) -> dict[str, Any]:
+    table = {"type": "object", "additionalProperties": inner}
+    return {"description": about, **table} if about else table
+
+
+def text() -> str:
+    """The schema as it is shipped."""
+    return json.dumps(schema(), indent=1) + "\n"
+
+
+if __name__ == "__main__":
+    PATH.write_text(text(), encoding="utf-8")

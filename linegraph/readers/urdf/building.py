@@ -1,0 +1,188 @@
+"""From a tree of links and joints to a `Model`, its numbers folded or kept as parameters."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from linegraph.components.joints import JOINTS
+from linegraph.model.builder import Model
+from linegraph.model.builder_words import BodyHandle
+from linegraph.model.name_register import claims_of
+from linegraph.readers.urdf.mimics import Followers, followers_of
+from linegraph.readers.urdf.names import ROOT
+from linegraph.readers.urdf.report import Report, named
+from linegraph.readers.urdf.stems import MOMENTS, OFFSETS, stems
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from linegraph.readers.urdf.joints import Joint
+    from linegraph.readers.urdf.links import Inertial, Link
+    from linegraph.readers.urdf.structure import Tree
+    from linegraph.spatial.rotation import Inertia
+    from linegraph.spatial.vector import Vector
+
+_AXES = ("xx", "xy", "xz", "yy", "yz", "zz")
+
+
+class Options(NamedTuple):
+    """How a robot becomes a model.
+
+    Attributes:
+        floating: a free joint above the root link instead of a weld to ground.
+        symbolic: masses, moments and offsets of joints are parameters instead of numbers.
+        snap: as of `Model`.
+    """
+
+    floating: bool
+    symbolic: bool
+    snap: float
+
+
+def build(name: str, tree: Tree, options: Options, report: Report) -> Model:
+    """Build the model: bodies and joints in the order of the walk.
+
+    Raises:
+        SourceError: a ``<mimic>`` is impossible, or the builder refuses something.
+    """
+    followers = followers_of(tree.walk, report)
+    model = Model(name, snap=options.snap)
+    model.source = report.source
+    model.places = {f'joint "{joint.name}"': joint.line for joint in tree.walk}
+    add = _Symbolic(model, tree) if options.symbolic else _Folded(model)
+    with report.placed(tree.root.line, named("link", tree.root.name)):
+        add.link(tree.root)
+    _add_base(model, tree, options, report)
+    for joint in tree.walk:
+        link = tree.links[joint.child]
+        with report.placed(link.line, named("link", link.name)):
+            add.link(link)
+        with report.placed(joint.line, named("joint", joint.name)):
+            _add_joint(model, joint, add.offset(joint))
+    _add_followers(model, tree, followers, report)
+    _mention_dampers(tree, report)
+    return model
+
+
+def _add_base(model: Model, tree: Tree, options: Options, report: Report) -> None:
+    """Connect the root link to ground, before all other joints so that its v comes first."""
+    joints = {joint.name: joint for joint in tree.walk}
+    if options.floating:
+        if ROOT in joints:
+            problem = f'the joint above a floating robot is called "{ROOT}"; rename this one'
+            raise report.error(joints[ROOT].line, named("joint", ROOT), problem)
+        model.free(ROOT, (model.ground, tree.root.name))
+        return
+    # A weld has no coordinate, so that emitted code does not show its name; it only has to differ from
+    # every joint's. A file may call a joint anything, hence the search.
+    weld = "ground/base"
+    while weld in joints:
+        weld += "'"
+    model.fixed(weld, (model.ground, tree.root.name))
+
+
+def _add_joint(model: Model, joint: Joint, at: Sequence[Any]) -> None:
+    """Put a frame of the joint's name on the parent; the head is the child link itself."""
+    tail = BodyHandle(model, joint.parent).frame(joint.name, at, joint.rpy)
+    model.add_joint(JOINTS[joint.kind](joint.name, (tail, joint.child), joint.axis))
+
+
+def _add_followers(model: Model, tree: Tree, followers: Followers, report: Report) -> None:
+    for joint in tree.walk:
+        with report.placed(joint.line, named("joint", joint.name)):
+            if joint.name in followers.still:
+                model.lock(joint.name, followers.still[joint.name])
+            elif joint.name in followers.moving:
+                mimic = followers.moving[joint.name]
+                model.couple(joint.name, mimic.master, mimic.multiplier, mimic.offset)
+
+
+def _mention_dampers(tree: Tree, report: Report) -> None:
+    for joint in tree.walk:
+        if joint.damped:
+            text = "damping and friction are ignored"
+            report.warn(joint.line, named("joint", joint.name), text)
+
+
+class _Folded:
+    """Adds links and gives offsets as the file's numbers."""
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+
+    def link(self, link: Link) -> None:
+        """Add a body with its mass centre and central inertia."""
+        if link.inertial is None:
+            self._model.body(link.name)
+            return
+        given = link.inertial
+        inertia = dict(zip(_AXES, given.tensor, strict=True))
+        self._model.body(link.name, mass=given.mass, mass_center=given.center, inertia=inertia)
+
+    def offset(self, joint: Joint) -> Sequence[Any]:
+        """The joint's position in the parent link (m)."""
+        return joint.at
+
+
+class _Symbolic:
+    """Adds links and gives offsets as parameters with the file's numbers as values.
+
+    A link's ten moments are about its own origin: M and h are linear in them.
+    """
+
+    def __init__(self, model: Model, tree: Tree) -> None:
+        self._model = model
+        # a coordinate and a parameter of one name would be one symbol
+        taken = {
+            claim.name
+            for joint in tree.walk
+            for claim in claims_of(JOINTS[joint.kind](joint.name, ("", "")))
+        }
+        self._links: Mapping[str, str] = stems(tree.links, MOMENTS, taken)
+        self._joints: Mapping[str, str] = stems((j.name for j in tree.walk), OFFSETS, taken)
+
+    def link(self, link: Link) -> None:
+        """Add a body whose mass, first moment and inertia about its origin are parameters."""
+        if link.inertial is None:
+            self._model.body(link.name)
+            return
+        mass, first, inertia = moments_of(link.inertial)
+        meanings = [
+            ("kg", "mass"),
+            *(("kg m", f"first moment of mass {c}") for c in "xyz"),
+            *(("kg m^2", f"inertia {entry} about the link's origin") for entry in _AXES),
+        ]
+        stem, who = self._links[link.name], named("link", link.name)
+        m, mx, my, mz, *tensor = (
+            self._model.parameter(f"{prefix}_{stem}", value, unit, f"{meaning}, {who}")
+            for prefix, value, (unit, meaning) in zip(
+                MOMENTS, (mass, *first, *inertia), meanings, strict=True
+            )
+        )
+        entries = dict(zip(_AXES, tensor, strict=True))
+        self._model.body(link.name, mass=m, first_moment=(mx, my, mz), inertia=entries)
+
+    def offset(self, joint: Joint) -> Sequence[Any]:
+        """Three parameters: the joint's position in the parent link."""
+        stem, who = self._joints[joint.name], named("joint", joint.name)
+        return [
+            self._model.parameter(
+                f"{c}_{stem}", value, "m", f"position {c} in the parent link, {who}"
+            )
+            for c, value in zip(OFFSETS, joint.at, strict=True)
+        ]
+
+
+def moments_of(inertial: Inertial) -> tuple[float, Vector, Inertia]:
+    """Mass, first moment and inertia about the origin of the link's frame."""
+    m, (x, y, z) = inertial.mass, inertial.center
+    xx, xy, xz, yy, yz, zz = inertial.tensor
+    about = (
+        xx + m * (y * y + z * z),
+        xy - m * x * y,
+        xz - m * x * z,
+        yy + m * (x * x + z * z),
+        yz - m * y * z,
+        zz + m * (x * x + y * y),
+    )
+    return m, (m * x, m * y, m * z), about

@@ -1,0 +1,112 @@
+"""What extensions of a URDF say of the motion: it is not read, and a user should know.
+
+A URDF may hold elements of other tools: with a prefix (``drake:rotor_inertia``), or in ``<gazebo>``,
+``<transmission>`` and ``<ros2_control>``. Most are about sensors, control or looks. Those whose names tell of
+inertia, joints, loops, springs or dampers would change the equations.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from linegraph.readers.urdf.report import IGNORED, mechanical, named, shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from linegraph.readers.urdf.document import Element
+    from linegraph.readers.urdf.report import Report
+
+TOOLS = frozenset({"gazebo", "transmission", "ros2_control"})
+"""Elements of other tools without a prefix: well known, and mostly without effect on the motion."""
+
+_IN_TOOLS = frozenset(
+    {
+        *("motorInertia", "motor_inertia", "rotorInertia", "rotor_inertia", "armature"),
+        *(
+            "springStiffness",
+            "spring_stiffness",
+            "stiffness",
+            "dampingFactor",
+            "damping",
+            "friction",
+        ),
+        *("mimic", "mimicJoint", "mass", "inertial", "gearbox_ratio", "thread_pitch"),
+    }
+)
+"""What of these elements counts; their joints do where they have a type, as in SDF."""
+
+_RATIOS = frozenset({"mechanicalReduction", "mechanical_reduction"})
+"""What counts beside a rotor's inertia only: without one, motion at the joint is the same."""
+
+_ELSEWHERE = frozenset({"surface", "contact", "sensor", "visual", "collision"})
+"""Parts of other tools' elements that are about contact, sensors and looks."""
+
+_ZERO = re.compile(r"[+-]?0*\.?0*(?:[eE][+-]?[0-9]+)?")
+_MOST_NAMED = 4
+
+
+def mention_extensions(root: Element, report: Report) -> None:
+    """Warn of extensions that say something of the motion, in the robot, its links and its joints."""
+    _mention(root, "robot", report)
+    for part in root.children:
+        if part.tag in ("link", "joint") and "name" in part.attributes:
+            _mention(part, named(part.tag, part.attributes["name"]), report)
+
+
+def _mention(owner: Element, thing: str, report: Report) -> None:
+    for child in owner.children:
+        if ":" in child.tag:
+            found = [child] if mechanical(child.tag) else list(_prefixed(child))
+        elif child.tag in TOOLS:
+            found = list(_of_tools(child))
+        else:
+            continue
+        if any(element.tag not in _RATIOS for element in found):
+            _tell(child, found, thing, report)
+
+
+def _tell(child: Element, found: list[Element], thing: str, report: Report) -> None:
+    report.dropped.append((child.line, child.tag))
+    own = child.attributes.get("name") or child.attributes.get("reference")
+    owner = named(child.tag, own) if thing == "robot" and own else thing
+    where = "" if owner != thing or found[0] is child else f" in <{shown(child.tag)}>"
+    tags = list(dict.fromkeys(element.tag for element in found))
+    kinds = [f"<{shown(tag)}>" for tag in tags]
+    said = {element.tag: element.text for element in found if element.text}
+    values = [
+        f"{kind} {shown(said.get(tag, ''))}".rstrip() for kind, tag in zip(kinds, tags, strict=True)
+    ]
+    text, many = (f"{_listed(parts)}{where}: {IGNORED}" for parts in (values, kinds))
+    report.warn(child.line, owner, text, many)
+
+
+def _listed(parts: list[str]) -> str:
+    return ", ".join(parts[:_MOST_NAMED]) + ", ..." * (len(parts) > _MOST_NAMED)
+
+
+def _prefixed(element: Element) -> Iterator[Element]:
+    for child in element.children:
+        if mechanical(child.tag):
+            yield child
+        else:
+            yield from _prefixed(child)
+
+
+def _of_tools(element: Element) -> Iterator[Element]:
+    """What of the elements of other tools changes the motion, zeros left out."""
+    for child in element.children:
+        local = child.tag.rpartition(":")[2]
+        if local in ("gravity", "turnGravityOff"):
+            off = ("true", "1") if local == "turnGravityOff" else ("false", "0")
+            found = child.text.lower() in off
+        elif local == "joint":
+            found = "type" in child.attributes
+        else:
+            zero = child.text and _ZERO.fullmatch(child.text)
+            found = local in (_IN_TOOLS | _RATIOS) and not zero
+        if found:
+            yield child
+        elif local not in _ELSEWHERE:
+            yield from _of_tools(child)

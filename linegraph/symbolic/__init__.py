@@ -1,0 +1,1 @@
+"""Closed forms for people: simplification, the Coriolis matrix, linear systems, dynamicsymbols."""

@@ -1,0 +1,1 @@
+"""The same numbers by another route: golden vectors and `check`."""

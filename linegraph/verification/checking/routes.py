@@ -1,0 +1,193 @@
+"""The routes to the equations of motion at a state: the program, the derivation over floats, the paper."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from linegraph.algebra.jets import Jet, Jets
+from linegraph.algebra.protocol import Floats
+from linegraph.dynamics import orthogonality
+from linegraph.dynamics.applied_forces import applied, efforts
+from linegraph.dynamics.edge_quantities import network_powers, powers
+from linegraph.dynamics.edge_variables import InverseScheme
+from linegraph.dynamics.whole_system import network_entries
+from linegraph.ir.interpreter import run
+from linegraph.ir.program import Program
+from linegraph.ir.prologue import PREPARE
+from linegraph.paper.joint_form import paper_matrices
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.dynamics.chords import Equation
+    from linegraph.ir.program import Module
+    from linegraph.kinematics.links import KinematicTree
+    from linegraph.notebook.functions import Function
+    from linegraph.numeric.reference import Numeric
+    from linegraph.pipeline import Derivation
+    from linegraph.verification.golden.point import Point
+
+Vector = list[float]
+
+
+@dataclass(frozen=True)
+class _State:
+    """A model at a state: the routes to M, h and the accelerations that share its derivation."""
+
+    point: Point
+    derivation: Derivation
+    algebra: Floats
+    parameters: dict[str, Scalar]
+    tree: KinematicTree
+    numeric: Numeric
+    q: Vector
+    v: Vector
+
+    @classmethod
+    def at(cls, point: Point) -> _State:
+        """The routes at a state that was drawn."""
+        numeric = point.walk.numeric
+        q, v = list(point.q), list(point.v)
+        values = dict(numeric.parameters)
+        algebra = Floats(**numeric.algebra.arguments, p=values)
+        given = (algebra, values, numeric.tree, numeric)
+        return cls(point, point.derivation, *given, q, v)
+
+    def reference(self) -> tuple[list[Vector], Vector]:
+        """M and h by the derivation over floats."""
+        crossed = orthogonality.arms(self.tree, self.algebra, self.q, self.v)
+        M = self.numeric.united_mass_matrix(self.q, self.v)
+        passive = self._applied(crossed, driven=False)
+        return M, orthogonality.inverse_dynamics(self.tree, self.algebra, crossed, applied=passive)
+
+    def constraints(self) -> tuple[Vector, Vector]:
+        """J and γ by the derivation over floats."""
+        J = [x for row in self.numeric.constraint_jacobian(self.q) for x in row]
+        return J, self.numeric.constraint_bias(self.q, self.v)
+
+    def emitted(self, module: Module) -> tuple[list[Vector], Vector]:
+        """M and h by the program that would be emitted."""
+        M, h = self.run(module, "equations")
+        size = len(self.v)
+        return [M[i * size : (i + 1) * size] for i in range(size)], h
+
+    def accelerations(self, module: Module) -> Vector:
+        """v̇ by the program that would be emitted, without constraints."""
+        (a,) = self.run(module, "forward_dynamics")
+        return a
+
+    def constrained_motion(self, module: Module, function: Function) -> tuple[Vector, Vector]:
+        """v̇ and λ by the emitted Python: what it iterates, or decides, no interpreter of programs knows.
+
+        Where it reports a status instead, v̇ and λ are no numbers.
+        """
+        import numpy
+
+        given = {"q": self.q, "v": self.v, **self.algebra.arguments}
+        known = {x.name: float(self.parameters[x.name]) for x in module.parameters}
+        try:
+            a, lam = function(*(given[name] for name in function.arguments), parameters=known)
+        except (ArithmeticError, numpy.linalg.LinAlgError):
+            rows = len(self.point.lam)
+            return [float("nan")] * len(self.v), [float("nan")] * rows
+        return list(map(float, a)), list(map(float, lam))
+
+    def run(self, module: Module, name: str) -> list[Vector]:
+        """The results of one of the programs that would be emitted."""
+        exchange = self.numeric.exchange(self.q, self.v)
+        loop = exchange.solved if exchange is not None and exchange.network.loop else []
+        given = {"q": self.q, "v": self.v, "a": self.point.a, "loop": loop}
+        return self._run(module, name, {**given, **self.algebra.arguments})
+
+    def _run(self, module: Module, name: str, given: dict[str, Any]) -> list[Vector]:
+        """Those of a program and of what it calls."""
+        programs = {p.name: p for p in module.programs if isinstance(p, Program)}
+        program = programs[name]
+        if program.handed:
+            (constants,) = run(programs[PREPARE], given)
+            given, program = {**given, "c": constants}, programs[program.handed]
+        for call in program.calls:
+            if call.program in programs:
+                found = self._run(module, call.program, given)
+                given |= {x.name: y for x, y in zip(call.results, found, strict=True)}
+        return run(program, given)
+
+    def forces(self) -> Vector:
+        """Q: joint efforts and what inputs drive."""
+        crossed = orthogonality.arms(self.tree, self.algebra, self.q, self.v)
+        acting = self._applied(crossed, driven=True)
+        active = orthogonality.generalised_forces(self.tree, self.algebra, crossed, acting)
+        chords = self.numeric.chords(self.q, self.v)
+        return [float(x) for x in efforts(self.tree, self.algebra, chords, active)]
+
+    def audit_sums(self, acceleration: Vector, multipliers: Vector, rows: list[Equation]) -> Any:
+        """What the powers of all edges sum up to in each subspace."""
+        import numpy
+
+        crossed = orthogonality.arms(self.tree, self.algebra, self.q, self.v)
+        scheme = InverseScheme(
+            self.derivation,
+            self.tree,
+            self.algebra,
+            self.parameters,
+            crossed,
+            self.numeric.chords(self.q, self.v),
+            (tuple(self.q), tuple(self.v)),
+            acceleration,
+            list(zip(rows, multipliers, strict=True)),
+        )
+        _, sums = powers(scheme.edges())
+        _, domains = network_powers(self.tree.network, scheme.network())
+        return numpy.array([float(x) for x in (*sums, *domains.values())])
+
+    def printed(self) -> tuple[list[Vector], Vector]:
+        """M and h by the paper's matrices; what elements add is projected by the float reference."""
+        crossed = orthogonality.arms(self.tree, self.algebra, self.q, self.v)
+        matrices = paper_matrices(self.tree, self.algebra, self.q, self.v)
+        loads = orthogonality.generalised_forces(
+            self.tree, self.algebra, crossed, self._applied(crossed, driven=False)
+        )
+        rows = [list(row) for row in matrices.A]
+        entries = network_entries(self.numeric.exchange(self.q, self.v), self.algebra)
+        for i, j, entry in entries:
+            rows[i][j] += entry
+        return rows, [-b - load for b, load in zip(matrices.B, loads, strict=True)]
+
+    def power_balance(self, acceleration: Vector) -> tuple[float, float, float]:
+        """The rate of kinetic and gravitational energy, the power of all that is applied, and their size."""
+        import numpy as np
+
+        crossed = orthogonality.arms(self.tree, self.algebra, self.q, self.v)
+        passive = orthogonality.generalised_forces(
+            self.tree, self.algebra, crossed, self._applied(crossed, driven=False)
+        )
+        first = self.tree.layout.mechanical
+        both = list(zip(self.v, self.forces(), passive, strict=True))[:first]
+        power = sum(v * (active + own) for v, active, own in both)
+        entries = network_entries(self.numeric.exchange(self.q, self.v), self.algebra)
+        for i, j, entry in entries:
+            # what a rotor behind a gear takes is no power applied to the bodies
+            power -= self.v[i] * entry * acceleration[j] if i < first else 0.0
+        of_M, of_force = self.point.bodies.mass_matrix[1], self.point.force[1]
+        (_, of_a) = self.point.motion[0]
+        of_force = of_force + of_M @ (np.abs(acceleration) + of_a)
+        size = float(np.abs(self.v[:first]) @ of_force[:first])
+        return float(self._energy_rate(acceleration)), float(power), size
+
+    def _energy_rate(self, acceleration: Sequence[float]) -> float:
+        """The rate of kinetic and gravitational energy, by calculating with jets."""
+        rates = orthogonality.coordinate_rates(self.tree, self.algebra, self.q, self.v)
+        q = [Jet(x, dx, 0) for x, dx in zip(self.q, rates, strict=True)]
+        v = [Jet(x, dx, 0) for x, dx in zip(self.v, acceleration, strict=True)]
+        jets = Jets(self.algebra)
+        energies = orthogonality.energy(self.tree, jets, orthogonality.arms(self.tree, jets, q, v))
+        return float(sum(energy.dx for energy in energies if isinstance(energy, Jet)))
+
+    def _applied(self, crossed: list[orthogonality.Arm], *, driven: bool) -> Any:
+        state = (tuple(self.q), tuple(self.v))
+        model = self.derivation.model
+        return applied(
+            model, self.tree, self.algebra, self.parameters, crossed, *state, driven=driven
+        )

@@ -1,0 +1,79 @@
+"""Whose law it is that is not defined: what a user must know to bound the states."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from linegraph.algebra.formula import Formula, parse
+from linegraph.components.parameters import names_in, resolver
+from linegraph.errors import ModelError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from linegraph.numeric.reference import Numeric
+    from linegraph.pipeline import Derivation
+
+BOUND = (
+    "at all states that were tried; bound them where it is defined: [check] with inputs, coordinates, "
+    "velocities or parameters = { NAME = [low, high] } or t = [low, high] in a model file, check_within(...) "
+    "of a model in Python"
+)
+
+
+def undefined(derivation: Derivation, error: ModelError, numeric: Numeric | None) -> ModelError:
+    """An error of a law that is defined nowhere, with the component and with what to do.
+
+    Args:
+        derivation: the model.
+        error: what a law said; laws of networks do not say whose they are.
+        numeric: the model at a state where it was not defined, for its inputs, time and parameters.
+    """
+    thing, problem = error.thing, error.problem
+    if not thing:
+        thing, others = _owner(derivation, problem.partition("(")[0], numeric)
+        problem += f" (it may also be of {', '.join(others)})" * bool(others)
+    return ModelError(thing or f'model "{derivation.model.name}"', f"{problem}, {BOUND}")
+
+
+def _owner(derivation: Derivation, function: str, numeric: Numeric | None) -> tuple[str, list[str]]:
+    """The component of a network whose law is not defined, and others it may be.
+
+    These are the components whose own expressions use the function that has no value; of several those whose
+    expressions have none for the inputs, the time and the parameters.
+    """
+    candidates = [c for c in derivation.model.components if function in _used(c.values())]
+    if len(candidates) > 1 and numeric is not None:
+        certain = [c for c in candidates if _fails(numeric, c.values())]
+        candidates = certain or candidates
+    things = [f'{component.kind} "{component.name}"' for component in candidates]
+    return (things[0], things[1:]) if things else ("", [])
+
+
+def _fails(numeric: Numeric, values: tuple[Any, ...]) -> bool:
+    """Whether one of some expressions has no value for the inputs, the time and the parameters."""
+    known = {**numeric.parameters, **numeric.tree.layout.named_inputs, "t": numeric.t}
+    for value in values:
+        if names_in(value) <= known.keys():
+            try:
+                resolver(numeric.algebra, known)(value)
+            except (ModelError, ArithmeticError):
+                return True
+    return False
+
+
+def _used(values: tuple[Any, ...]) -> set[str]:
+    """The functions and operations that some expressions use."""
+    return {op for value in values for op in _operations(value)}
+
+
+def _operations(value: Any) -> Iterator[str]:
+    if isinstance(value, str):
+        value = parse(value)
+    if isinstance(value, Formula):
+        yield value.op
+        for part in value.parts:
+            if isinstance(part, Formula):
+                yield from _operations(part)
+    elif hasattr(value, "free_symbols"):
+        yield from (str(f.func).lower() for f in value.atoms() | set(value.args))

@@ -1,0 +1,335 @@
+"""Derivatives of the equations of motion: Newton's and Euler's, calculated a little beside the state.
+
+Every column is one complex step (`steps`): along q̇ = N d for changes of position d, along v, u or a
+parameter. With r = M a + h - Q, which is zero,
+
+    ∂a/∂x = -M⁻¹ ∂r/∂x
+
+and with constraints v̇ itself is solved for in the independent coordinates, all of it beside the state. What
+a change of position becomes while the state moves is the bracket of the two motions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from linegraph.dynamics.chords import equations
+from linegraph.verification.golden.bodies import Bodies
+from linegraph.verification.golden.constraints import Constraints
+from linegraph.verification.golden.steps import STEP, Complexes, stepped
+from linegraph.verification.golden.walk import Walk, coordinate_rates
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from linegraph.verification.golden.point import Point
+    from linegraph.verification.golden.walk import Valued
+
+    Array = Any
+
+
+IDLE = 1e-2
+"""What a variable without effect takes part in is at least this fraction of what others of its kind do."""
+
+
+class _Slopes(NamedTuple):
+    """The derivatives of M (n x n x k), h and Q (n x k) by k variables."""
+
+    mass: Array
+    bias: Array
+    forces: Array
+
+
+@dataclass(frozen=True)
+class Derivatives:
+    """What a model does beside a state.
+
+    Attributes:
+        point: the state, and what is known there.
+    """
+
+    point: Point
+
+    # -- along what
+
+    @property
+    def _motions(self) -> Array:
+        """N: how q moves for unit changes of position."""
+        return self.point.walk.rates_by_direction[:, : self._count]
+
+    @property
+    def _count(self) -> int:
+        """How many changes of position there are: one for each velocity of mechanics."""
+        return int(self.point.walk.tree.layout.mechanical)
+
+    def _beside(
+        self,
+        dq: Sequence[float] = (),
+        dv: Sequence[float] = (),
+        du: Sequence[float] = (),
+        parameters: Mapping[str, complex] | None = None,
+    ) -> Walk:
+        """How everything moves a little further along a direction."""
+        point = self.point
+        q, v = _moved(point.q, dq), _moved(point.v, dv)
+        u = _moved(point.u, du) if len(du) else None
+        numeric = stepped(point.walk.numeric, q, v, u=u, parameters=parameters)
+        return Walk(numeric, q, v)
+
+    def _slopes(self, walks: Sequence[Walk], *, mass: bool = True, bias: bool = True) -> _Slopes:
+        """All by as many variables as there are walks; M and h may be known not to depend on them."""
+        np, n, k = self.point.walk.np, len(self.point.v), len(walks)
+        found = _Slopes(np.zeros((n, n, k)), np.zeros((n, k)), np.zeros((n, k)))
+        for i, bodies in enumerate(map(Bodies, walks)):
+            if mass:
+                found.mass[:, :, i] = bodies.mass_matrix[0].imag / STEP
+            if bias:
+                found.bias[:, i] = bodies.bias[0].imag / STEP
+            found.forces[:, i] = bodies.forces[0].imag / STEP
+        return found
+
+    @cached_property
+    def _by_changes(self) -> _Slopes:
+        return self._slopes([self._beside(dq=dq) for dq in self._motions.T])
+
+    @cached_property
+    def _by_velocities(self) -> _Slopes:
+        units = self.point.walk.np.eye(len(self.point.v))
+        # only what networks store depends on velocities
+        mass = self.point.walk.tree.network is not None
+        return self._slopes([self._beside(dv=dv) for dv in units], mass=mass)
+
+    @cached_property
+    def _by_inputs(self) -> _Slopes:
+        units = self.point.walk.np.eye(len(self.point.u))
+        # what may be prescribed by inputs, in motions or laws, M and h depend on; not on mere efforts
+        tree = self.point.walk.tree
+        driven = any(link.place.drive for link in tree.links) or any(c.drive for c in tree.closures)
+        moving = driven or bool(tree.layout.named_inputs)
+        walks = [self._beside(du=du) for du in units]
+        return self._slopes(walks, mass=moving, bias=moving)
+
+    @cached_property
+    def _by_parameters(self) -> _Slopes:
+        values = self.point.walk.numeric.parameters
+        names = [p.name for p in self.point.derivation.model.parameters.values() if not p.derived]
+        steps = [{name: complex(values[name], STEP)} for name in names]
+        return self._slopes([self._beside(parameters=step) for step in steps])
+
+    # -- of tau
+
+    def _of_tau(self, by: _Slopes, unit: Any = 1.0) -> Valued:
+        """∂(M a + h), for any a."""
+        np = self.point.walk.np
+        found = np.einsum("ijk,j->ik", by.mass, self.point.a) + by.bias
+        return found, self._sizes(found, self.point.inverse[1], unit)
+
+    @property
+    def tau_by_changes(self) -> Valued:
+        """∂τ/∂q along the velocities."""
+        return self._of_tau(self._by_changes)
+
+    @property
+    def tau_by_velocities(self) -> Valued:
+        """∂τ/∂v."""
+        return self._of_tau(self._by_velocities)
+
+    @property
+    def tau_by_parameters(self) -> Valued:
+        """∂τ/∂p."""
+        return self._of_tau(self._by_parameters, self._parameter_units)
+
+    @cached_property
+    def _parameter_units(self) -> Array:
+        """For each parameter what its derivatives are counted in: those by its relative change."""
+        np, model = self.point.walk.np, self.point.derivation.model
+        values = self.point.walk.numeric.parameters
+        own = [abs(float(values[p.name])) for p in model.parameters.values() if not p.derived]
+        return np.array([1 / x if x else 0.0 for x in own])
+
+    def _sizes(self, found: Array, sizes: Array, unit: Any = 1.0) -> Array:
+        """What entries are made of: of each variable what it does most, each row in its own measure.
+
+        What does nothing may be what is left of much that does: at least a fraction of what mechanics
+        does most, and of what a unit does, for states and shifts are of its size. Parameters are not, and
+        inputs stand beside forces of any size: there the unit is that of each, or nothing.
+        """
+        np = self.point.walk.np
+        measure = np.where(sizes > 0, sizes, np.inf)[:, None]
+        most = (np.abs(found) / measure).max(axis=0, initial=0.0)
+        alike = most[: self._count].max(initial=0.0) if len(most) == self._count else 0.0
+        most = np.maximum(most, IDLE * np.maximum(alike, unit))
+        return np.maximum(np.abs(found), sizes[:, None] * most)
+
+    # -- of v̇
+
+    def _of_motion(self, by: _Slopes, unit: Any = 1.0) -> Valued:
+        """∂v̇ = -M⁻¹ ∂r at the v̇ of the state."""
+        np, (M, of_M) = self.point.walk.np, self.point.bodies.mass_matrix
+        a, of_a = self.point.motion[0]
+        scale = self.point.scale(of_M, of_M[:0])[0]
+        inverse = np.linalg.inv(M * scale * scale[:, None]) * scale * scale[:, None]
+        slopes = np.einsum("ijk,j->ik", by.mass, a) + by.bias - by.forces
+        found = -inverse @ slopes
+        size = self.point.force[1] + np.abs(M) @ np.abs(a)
+        of_slopes = self._sizes(slopes, size, unit)
+        parts = np.abs(inverse) @ (of_slopes + of_M @ np.abs(found))
+        return found, np.maximum(parts, self._sizes(found, of_a, unit))
+
+    @cached_property
+    def motion_by_changes(self) -> Valued:
+        """∂v̇/∂q along the velocities."""
+        return self._of_motion(self._by_changes)
+
+    @cached_property
+    def motion_by_velocities(self) -> Valued:
+        """∂v̇/∂v."""
+        return self._of_motion(self._by_velocities)
+
+    @cached_property
+    def motion_by_inputs(self) -> Valued:
+        """∂v̇/∂u."""
+        return self._of_motion(self._by_inputs, 0.0)
+
+    @cached_property
+    def motion_by_parameters(self) -> Valued:
+        """∂v̇/∂p."""
+        return self._of_motion(self._by_parameters, self._parameter_units)
+
+    # -- of the state
+
+    @cached_property
+    def _bracket(self) -> Array:
+        """What d does to its own rate: ``d' = dv + [bracket] d``.
+
+        With δq = N d both N d' + Ṅ d and ∂(N v) δq + N dv are its rate.
+        """
+        np, point = self.point.walk.np, self.point
+        motions, algebra, tree = self._motions, Complexes(), point.walk.tree
+        units, v = np.eye(len(point.v))[: self._count], list(point.v)
+
+        def rates(along: Array, velocities: Sequence[float]) -> Array:
+            moved = coordinate_rates(tree, algebra, _moved(point.q, along), velocities)
+            return np.array([complex(x).imag / STEP for x in moved])
+
+        own = motions @ np.array(v[: self._count])
+        columns = [
+            rates(motion, v) - rates(own, list(unit))
+            for motion, unit in zip(motions.T, units, strict=True)
+        ]
+        gaps = np.array(columns).reshape(self._count, len(point.q)).T
+        return np.linalg.pinv(motions) @ gaps
+
+    @cached_property
+    def state_by_state(self) -> Valued:
+        """A."""
+        np = self.point.walk.np
+        if self.point.walk.tree.closed:
+            return self._on_constraints
+        n, count = len(self.point.v), self._count
+        above = np.hstack([self._bracket, np.eye(count, n)])
+        (by_q, of_q), (by_v, of_v) = self.motion_by_changes, self.motion_by_velocities
+        found = np.vstack([above, np.hstack([by_q, by_v])])
+        # each entry of the bracket is a velocity, or what is left of several
+        fastest = np.abs(self.point.v[:count]).max(initial=0.0)
+        of_above = np.maximum(np.abs(above), fastest)
+        return found, np.vstack([of_above, np.hstack([of_q, of_v])])
+
+    @cached_property
+    def state_by_inputs(self) -> Valued:
+        """B."""
+        np = self.point.walk.np
+        if self.point.walk.tree.closed:
+            return self._by_inputs_on_constraints
+        (below, of_below), above = self.motion_by_inputs, np.zeros((self._count, len(self.point.u)))
+        return np.vstack([above, below]), np.vstack([above, of_below])
+
+    # -- of the independent coordinates
+
+    @cached_property
+    def _others(self) -> list[int]:
+        """The velocities that the constraints determine."""
+        kept = self.point.kept.velocities
+        return [k for k in range(len(self.point.v)) if k not in kept]
+
+    @cached_property
+    def _basis(self) -> Array:
+        """As many combinations of constraints as determine these; a constraint said twice counts once."""
+        rows = self.point.closed.jacobian[0][:, self._others]
+        return self.point.walk.np.linalg.svd(rows, full_matrices=False)[0].T
+
+    def _determined(self, J: Array, right: Array) -> Array:
+        """What the constraints make of a right-hand side: ``J_others x = right``."""
+        return self.point.walk.np.linalg.solve(
+            self._basis @ J[:, self._others], self._basis @ right
+        )
+
+    def _motion(self, walk: Walk) -> tuple[Array, Array]:
+        """V and ẇ at a state beside this one, whose velocities are brought onto the constraints from w."""
+        np, kept = walk.np, list(self.point.kept.velocities)
+        start = Constraints(walk)
+        J, rates = start.jacobian[0], start.rates[0]
+        v = np.array(walk.v, complex)
+        v[self._others] -= self._determined(J, rates)
+        walk = Walk(walk.numeric, walk.q, list(map(walk.number, v)))
+        bodies, closed = Bodies(walk), Constraints(walk)
+        T, rest = np.zeros((len(v), len(kept)), complex), np.zeros(len(v), complex)
+        T[kept, range(len(kept))] = 1.0
+        T[self._others] = -self._determined(J, J[:, kept])
+        rest[self._others] = self._determined(J, closed.bias[0])
+        M = bodies.mass_matrix[0]
+        force = bodies.forces[0] - bodies.bias[0] - M @ rest
+        return v.imag / STEP, np.linalg.solve(T.T @ M @ T, T.T @ force).imag / STEP
+
+    def _of_independent(self, walks: Sequence[Walk], unit: Any = 1.0) -> tuple[Array, Valued]:
+        """The derivatives of v and of ẇ."""
+        np, kept = self.point.walk.np, list(self.point.kept.velocities)
+        columns = [self._motion(walk) for walk in walks]
+        moved = np.array([v for v, _ in columns]).reshape(len(walks), len(self.point.v)).T
+        found = np.array([x for _, x in columns]).reshape(len(walks), len(kept)).T
+        return moved, (found, self._sizes(found, self.point.motion[0][1][kept], unit))
+
+    @cached_property
+    def _positions(self) -> Array:
+        """All changes of position for unit changes of those that are free, by the equations of position."""
+        np, free = self.point.walk.np, list(self.point.kept.changes)
+        count = sum(e.holonomic for e in equations(self.point.walk.tree))
+        rows = np.vstack([self.point.closed.jacobian[0][:count], np.eye(len(self.point.v))[free]])
+        right = np.vstack([np.zeros((count, len(free))), np.eye(len(free))])
+        return np.linalg.lstsq(rows, right, rcond=None)[0]
+
+    @cached_property
+    def _on_constraints(self) -> Valued:
+        """A of changes that keep the constraints: of position, and w by itself."""
+        np, T, D = self.point.walk.np, self.point.reduction[0][0], self._positions
+        free = list(self.point.kept.changes)
+        along = self._motions @ D[: self._count]
+        walks = [self._beside(dq=dq) for dq in along.T] + [self._beside(dv=dv) for dv in T.T]
+        moved, (below, of_below) = self._of_independent(walks)
+        moved[: self._count, : len(free)] += self._bracket @ D[: self._count]
+        above = moved[free]
+        # what is zero is left of velocities, and of their parts along unit changes
+        fastest = max(1.0, np.abs(self.point.v[: self._count]).max(initial=0.0))
+        of_above = np.maximum(np.abs(above), fastest)
+        return np.vstack([above, below]), np.vstack([of_above, of_below])
+
+    @cached_property
+    def _by_inputs_on_constraints(self) -> Valued:
+        np = self.point.walk.np
+        units = np.eye(len(self.point.u))
+        _, (below, of_below) = self._of_independent([self._beside(du=du) for du in units], 0.0)
+        # what a force along a velocity that is locked does is left of what locks it
+        of_T, inertia = self.point.reduction[0][1], self.point.reduced[0][0]
+        parts = np.abs(np.linalg.inv(inertia)) @ of_T.T @ np.abs(self._by_inputs.forces)
+        of_below = np.maximum(of_below, parts)
+        above = np.zeros((len(self.point.kept.changes), len(units)))
+        return np.vstack([above, below]), np.vstack([above, of_below])
+
+
+def _moved(x: Sequence[float], along: Sequence[float]) -> list[Any]:
+    """A step of some numbers along a direction; none where there is no direction."""
+    if not len(along):
+        return [complex(a) for a in x]
+    return [complex(a, STEP * b) for a, b in zip(x, along, strict=True)]

@@ -1,0 +1,217 @@
+"""Golden vectors: states of a model, and what its emitted functions must return there by another route.
+
+The route is `bodywise`: Newton's and Euler's equations of every body, from derivatives of where it is, in
+floats. What solves for accelerations is NumPy's. States obey what a state has to obey: quaternions have
+length 1, loops are closed and velocities allowed, and every law is defined.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from typing import TYPE_CHECKING, Any
+
+from linegraph.errors import ModelError
+from linegraph.ir.golden_vectors import CONSTANTS, RETURNED, Expected, Then, Values, Vectors
+from linegraph.ir.program import PREPARED_SUFFIX, Routine
+from linegraph.verification.golden.beside import beside
+from linegraph.verification.golden.draws import DIGITS, Asked, Drawing, short
+from linegraph.verification.golden.point import Kept, Point
+from linegraph.verification.golden.references import Reference, references
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from linegraph.ir.program import Module, Program
+    from linegraph.kinematics.frame_trees import NamedFrame
+    from linegraph.pipeline import Derivation
+    from linegraph.verification.golden.walk import Valued
+
+UNTESTED = {
+    "prepare": "the functions that take its constants are called by those that are compared",
+    "algebraic_loop": "called by functions that are compared",
+    "constraint_sizes": "called by functions that are compared",
+    "loop_equations": "called by functions that are compared",
+    "constrained_slopes": "called by functions that are compared",
+}
+"""Why a function is not called by itself; of all others, that no independent route is known."""
+
+NO_ROUTE = "there is no independent route to what it returns"
+EMPTY = "it returns nothing here"
+HANDED = "called by the function of its name without the ending"
+
+
+def vectors(
+    derivation: Derivation, module: Module, seed: int = 0, frames: Sequence[NamedFrame] = ()
+) -> Vectors:
+    """Golden vectors of all functions of a module that are known by another route.
+
+    Args:
+        derivation: the model.
+        module: its functions as they are to be emitted.
+        seed: of the random states.
+        frames: whose kinematics are among the functions.
+
+    Returns:
+        States with arguments q (nq), v (nv), u (nu), a (nv) in SI units, and the results there.
+
+    Raises:
+        ModelError: none of the functions is known by another route, or no state is defined.
+
+    Example:
+        >>> from linegraph import Model, derive
+        >>> from linegraph.programs.register import module_of
+        >>> model = Model("pendulum")
+        >>> bob = model.body("bob", mass=2.0, mass_center=(0, 0, -0.5))
+        >>> _ = model.revolute("hinge", between=("ground", bob), axis=(0, 1, 0))
+        >>> derivation = derive(model)
+        >>> module = module_of(derivation, "pendulum", folded=True, about=(), only=("mass_matrix",))
+        >>> vectors(derivation, module).values["M"].rows[0]
+        (0.5,)
+    """
+    register = references(frames)
+    if derivation.structure.closed:
+        register = {label: beside(label, known) for label, known in register.items()}
+    compared = _compared(register, module)
+    if not compared:
+        raise ModelError("tests", "nothing that is emitted is known by an independent route")
+    details: dict[str, Any] = {}
+    for p in module.programs:
+        details |= dict(p.details) if isinstance(p, Routine) else {}
+    kept = Kept(*(tuple(details.get(key, ())) for key in ("s_at", "w_at", "d_at")))
+    asked = [_asked(program, reference) for _, program, reference in compared]
+    drawing = Drawing(derivation, random.Random(seed), kept, asked, varied=bool(module.parameters))
+    points = drawing.points()
+    programs = {program.name: program for program in module.programs}
+    written = _Written(points)
+    expected = []
+    for label, program, reference in compared:
+        results = written.results(program, reference.results)
+        given = written.given(program, reference.given)
+        then = tuple(
+            Then(
+                after.function,
+                written.given(programs[after.function], after.given),
+                written.results(programs[after.function], after.results),
+            )
+            for after in reference.then
+            if after.function in programs
+        )
+        expected.append(Expected(label, program.name, reference.route, given, results, then))
+    names = tuple(x.name for x in module.parameters) if written.parametric else ()
+    if names:
+        values = {x.name: float(x.value or 0.0) for x in module.parameters}
+        rows = [{**values, **point.p} for point in points]
+        written.arguments["p"] = tuple(tuple(row[name] for name in names) for row in rows)
+    untested = _untested({program.name for _, program, _ in compared}, module)
+    return Vectors(len(points), written.arguments, written.values, tuple(expected), untested, names)
+
+
+class _Written:
+    """What is written of some states: arguments and results, each once."""
+
+    def __init__(self, points: Sequence[Point]) -> None:
+        """Nothing is asked for yet."""
+        self._points = points
+        self.arguments: dict[str, tuple[tuple[float, ...], ...]] = {}
+        self.values: dict[str, Values] = {}
+        self.parametric = False
+
+    def given(self, program: Program | Routine, keys: Mapping[str, str]) -> tuple[str, ...]:
+        """For each argument of a function its key."""
+        names = [argument.name for argument in program.arguments]
+        self.parametric = self.parametric or bool({"p", CONSTANTS} & {*names})
+        found = tuple(keys.get(name, name) for name in names if name != "p")
+        for key in found:
+            if not key.startswith(RETURNED) and key != CONSTANTS:
+                self.arguments[key] = tuple(_argument(point, key) for point in self._points)
+        return found
+
+    def results(
+        self, program: Program | Routine, made: Mapping[str, Callable[[Point], Valued]]
+    ) -> tuple[str, ...]:
+        """For each result of a function its key; none where it is not compared."""
+        for result in program.results:
+            if result.name in made:
+                source = made[result.name]
+                self.values[_key(source)] = _values(self._points, source, result.shape)
+        return tuple(_key(made[r.name]) if r.name in made else "" for r in program.results)
+
+
+def _compared(
+    register: Mapping[str, Reference], module: Module
+) -> list[tuple[str, Program | Routine, Reference]]:
+    """What is compared: label, function and reference, in emitted order."""
+    found = []
+    handed = {program.handed for program in module.programs}
+    for program in module.programs:
+        # a function that takes the constants of prepare is called by the one without, or is a text of its own
+        name = program.name.removesuffix(PREPARED_SUFFIX)
+        twin = PREPARED_SUFFIX * (name != program.name)
+        for label, reference in register.items():
+            own = (reference.function or label) == name and _returns(program)
+            whole = all(r.name in reference.results for r in program.results)
+            if own and program.name not in handed and (whole or reference.then):
+                found.append((label + twin, program, reference))
+    return found
+
+
+def _asked(program: Program | Routine, reference: Reference) -> Asked:
+    """What has to be defined at a state."""
+    made = {
+        r.name: reference.results[r.name] for r in program.results if r.name in reference.results
+    }
+    for after in reference.then:
+        made |= after.results
+    return made
+
+
+def _returns(program: Program | Routine) -> bool:
+    """Whether there is anything to compare: q̇ of a model without coordinates is empty."""
+    return any(0 not in result.shape for result in program.results)
+
+
+def _untested(compared: set[str], module: Module) -> tuple[tuple[str, str], ...]:
+    handed = {program.handed for program in module.programs}
+
+    def why(program: Program | Routine) -> str:
+        if program.name in handed:
+            return HANDED
+        own = program.name.removesuffix(PREPARED_SUFFIX)
+        return UNTESTED.get(own, NO_ROUTE) if _returns(program) else EMPTY
+
+    return tuple((p.name, why(p)) for p in module.programs if p.name not in compared)
+
+
+def _key(made: Callable[[Point], Valued]) -> str:
+    return made.__name__.lstrip("_")
+
+
+def _argument(point: Point, key: str) -> tuple[float, ...]:
+    if key == "t":
+        return (point.t,)
+    return tuple(getattr(point, key))
+
+
+def _values(
+    points: Sequence[Point],
+    made: Callable[[Point], Valued],
+    shape: tuple[int, ...],
+) -> Values:
+    """One result at all states, and for each entry the largest of what it is made of."""
+    np = points[0].walk.np
+    found = [made(point) for point in points]
+    sizes = [np.maximum(np.abs(value), size).reshape(-1) for value, size in found]
+    scale = np.max(sizes, axis=0) if sizes[0].size else np.zeros(0)
+    scale = [short(float(x) or 1.0, 3) for x in scale]
+    rows = tuple(
+        tuple(_digits(float(x), size) for x, size in zip(value.reshape(-1), scale, strict=True))
+        for value, _ in found
+    )
+    return Values(shape, rows, tuple(scale))
+
+
+def _digits(x: float, scale: float) -> float:
+    """A number with as many digits as its scale has: beyond these it is rounding, and so no zero is."""
+    lowest = DIGITS - 1 - math.floor(math.log10(scale))
+    return round(x, lowest) + 0.0

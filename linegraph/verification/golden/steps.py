@@ -1,0 +1,157 @@
+"""Complex steps: a model a little beside a state, along i.
+
+    f(x + i h d) = f(x) + i h f'(x) d + O(h^2)
+
+With h far below rounding the imaginary part is the derivative along d, to the last digit: nothing is
+subtracted. So what calculates in floats is differentiated by calculating in complex numbers.
+"""
+
+from __future__ import annotations
+
+import cmath
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from linegraph.components.parameters import valued
+from linegraph.errors import ModelError
+from linegraph.ir.functions import of_numbers
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.numeric.reference import Numeric
+
+STEP = 2.0**-100
+"""h; a power of two, by which products and quotients are exact."""
+
+
+class Complexes:
+    """Complex numbers as an algebra: functions of real numbers, continued.
+
+    Args:
+        arguments: the numbers of each argument, by name.
+
+    Example:
+        >>> Complexes().sin(0.5 + 1j * STEP).imag / STEP == cmath.cos(0.5).real
+        True
+    """
+
+    def __init__(self, **arguments: Scalar) -> None:
+        """Keep the numbers that `symbol` looks up."""
+        self.arguments = arguments
+
+    def symbol(self, argument: str, place: int | str | None = None) -> Scalar:
+        """The number given for this place."""
+        given = self.arguments[argument]
+        return given if place is None else given[place]
+
+    def sin(self, x: Scalar) -> Scalar:
+        """Sine."""
+        return self.function("sin", x)
+
+    def cos(self, x: Scalar) -> Scalar:
+        """Cosine."""
+        return self.function("cos", x)
+
+    def sqrt(self, x: Scalar) -> Scalar:
+        """Square root."""
+        return self.function("sqrt", x)
+
+    def function(self, name: str, *x: Scalar) -> Scalar:
+        """Any function of `functions.ARITY`; at a kink one side of it.
+
+        Of abs it is that of positive numbers, of min and max that of their first complex argument.
+
+        Raises:
+            ModelError: the function has no finite value there.
+        """
+        if not any(isinstance(part, complex) for part in x):
+            return of_numbers(name, *x)
+        z = [complex(part) for part in x]
+        real = of_numbers(name, *(part.real for part in z))
+        if name in _OWN:
+            return _OWN[name](*(x if name in ("min", "max") else z))
+        try:
+            return complex(real, getattr(cmath, name)(*z).imag)
+        except (ValueError, OverflowError):
+            raise ModelError("", f"{name}({z[0].real}) has no finite derivative") from None
+
+
+def _larger(a: Scalar, b: Scalar) -> complex:
+    first, second = complex(a), complex(b)
+    if first.real == second.real:
+        return first if isinstance(a, complex) else second
+    return first if first.real > second.real else second
+
+
+def _angle(y: complex, x: complex) -> complex:
+    squared = x.real * x.real + y.real * y.real
+    turned = (x.real * y.imag - y.real * x.imag) / squared
+    return complex(cmath.phase(complex(x.real, y.real)), turned)
+
+
+_OWN: dict[str, Callable[..., complex]] = {
+    "abs": lambda x: x if x.real >= 0 else -x,
+    "sign": lambda x: complex((x.real > 0) - (x.real < 0)),
+    "min": lambda a, b: -_larger(-a, -b),
+    "max": _larger,
+    "atan2": _angle,
+}
+"""What has no continuation in `cmath`."""
+
+
+def stepped(
+    numeric: Numeric,
+    q: Sequence[Scalar],
+    v: Sequence[Scalar],
+    *,
+    u: Sequence[Scalar] | None = None,
+    t: Scalar | None = None,
+    parameters: Mapping[str, Scalar] | None = None,
+) -> Numeric:
+    """The numeric reference for a state beside the real one, for inputs and parameters beside theirs.
+
+    Args:
+        numeric: the model in floats.
+        q: coordinates.
+        v: velocities.
+        u: inputs; those of `numeric` if left out.
+        t: the time; that of `numeric` if left out.
+        parameters: values in place of those of `numeric`; what is derived from them is so again.
+    """
+    given = numeric.algebra.arguments
+    tree, values = numeric.tree, numeric.parameters
+    algebra: Any = Complexes(
+        t=given["t"] if t is None else t, u=given["u"] if u is None else list(u)
+    )
+    derivation = numeric.derivation
+    assert derivation is not None
+    if u is not None or t is not None or parameters is not None:
+        known = {**numeric.parameters, **(parameters or {})}
+        model = derivation.model
+        values = valued(model.parameters.values(), algebra, lambda p: known[p.name])
+        tree = derivation.tree(algebra, values)
+    found = replace(numeric, tree=tree, algebra=algebra, parameters=values)
+    if tree.network is None or not tree.network.loop:
+        return found
+    algebra = Complexes(**algebra.arguments, loop=_loop(numeric, found, q, v))
+    return replace(found, algebra=algebra)
+
+
+def _loop(
+    numeric: Numeric, beside: Numeric, q: Sequence[Scalar], v: Sequence[Scalar]
+) -> list[complex]:
+    """The unknowns of an algebraic loop beside those of the real state: one step of Newton's."""
+    import numpy as np
+
+    at = numeric.exchange([x.real for x in q], [x.real for x in v])
+    assert at is not None
+    network = at.network
+    x = np.array(at.solved)
+    moved: Any = Complexes(**beside.algebra.arguments, loop=list(at.solved))
+    near = replace(beside, algebra=moved).exchange(q, v)
+    assert near is not None
+    slopes = np.array([[float(at.still(e)) for e in row] for row in network.loop_jacobian])
+    gap = np.array([complex(near.still(r)).imag for r in network.loop])
+    return [complex(a, b) for a, b in zip(x, -np.linalg.solve(slopes, gap), strict=True)]
