@@ -20,6 +20,7 @@ from linegraph.dynamics import orthogonality
 from linegraph.dynamics.applied_forces import efforts
 from linegraph.dynamics.chords import equations
 from linegraph.dynamics.edge_variables import InverseScheme
+from linegraph.kinematics.arms import arms
 from linegraph.numeric.reference import Numeric
 
 if TYPE_CHECKING:
@@ -206,7 +207,7 @@ class Reference:
 
     @cached_property
     def crossed(self) -> Any:
-        return orthogonality.arms(self.tree, self.algebra, *self.state)
+        return arms(self.tree, self.algebra, *self.state)
 
     def stacked(self, rows: Any) -> Array:
         """Scalars as an array, states first."""

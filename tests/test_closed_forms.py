@@ -33,6 +33,7 @@ from linegraph.dynamics import orthogonality
 from linegraph.dynamics.applied_forces import efforts
 from linegraph.dynamics.chords import equations as chord_equations
 from linegraph.dynamics.edge_variables import InverseScheme
+from linegraph.kinematics.arms import arms
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -137,7 +138,7 @@ class State:
     def forces(self) -> Array:
         """Q of the reference."""
         tree, algebra = self.numeric.tree, self.numeric.algebra
-        crossed = orthogonality.arms(tree, algebra, self.q, self.v)
+        crossed = arms(tree, algebra, self.q, self.v)
         acting = self.numeric.applied(self.q, self.v, driven=True)
         assert acting is not None
         active = orthogonality.generalised_forces(tree, algebra, crossed, acting)
@@ -155,7 +156,7 @@ class State:
     def scheme(self) -> InverseScheme:
         """Every edge of the reference."""
         n = self.numeric
-        crossed = orthogonality.arms(n.tree, n.algebra, self.q, self.v)
+        crossed = arms(n.tree, n.algebra, self.q, self.v)
         pairs = zip(chord_equations(n.tree), self.multipliers, strict=True)
         state = (tuple(self.q), tuple(self.v))
         chords = n.chords(self.q, self.v)

@@ -22,6 +22,7 @@ from linegraph.dynamics.applied_forces import efforts
 from linegraph.dynamics.chords import equations
 from linegraph.dynamics.edge_variables import InverseScheme
 from linegraph.dynamics.outputs import observed
+from linegraph.kinematics.arms import arms
 from linegraph.numeric.between_trees import transfer
 from linegraph.readers import modelfile
 
@@ -66,10 +67,10 @@ def solved(derivation: Derivation, q: Any, v: Any, u: Any) -> dict[str, Any]:
     """Accelerations of all bodies, outputs and kinetic energy at a state."""
     numeric = derivation.numeric(t=TIME, u=list(u))
     tree, algebra, parameters = numeric.tree, numeric.algebra, numeric.parameters
-    arms = orthogonality.arms(tree, algebra, q, v)
+    crossed = arms(tree, algebra, q, v)
     chords = numeric.chords(q, v)
     active = orthogonality.generalised_forces(
-        tree, algebra, arms, numeric.applied(q, v, driven=True)
+        tree, algebra, crossed, numeric.applied(q, v, driven=True)
     )
     Q = np.array(efforts(tree, algebra, chords, active), dtype=float)
     M = np.array(numeric.united_mass_matrix(q, v), dtype=float)
@@ -82,7 +83,7 @@ def solved(derivation: Derivation, q: Any, v: Any, u: Any) -> dict[str, Any]:
     a, lam = x[:size].tolist(), x[size:].tolist()
     pairs = list(zip(equations(tree), lam, strict=True))
     scheme = InverseScheme(
-        derivation, tree, algebra, parameters, arms, chords, (tuple(q), tuple(v)), a, pairs
+        derivation, tree, algebra, parameters, crossed, chords, (tuple(q), tuple(v)), a, pairs
     )
     outputs, _ = observed(
         derivation.model, tree, algebra, parameters, chords, (tuple(q), tuple(v)), scheme

@@ -25,6 +25,7 @@ from linegraph.dynamics import mass_matrix as columns_of_mass
 from linegraph.dynamics import orthogonality
 from linegraph.dynamics.articulated import forward_dynamics
 from linegraph.ir.dag import Dag
+from linegraph.kinematics.arms import Arm, arms, coordinate_rates
 from linegraph.numeric.reference import Numeric
 from linegraph.paper.joint_form import paper_matrices
 from linegraph.programs.register import module_of
@@ -81,8 +82,8 @@ def error(found: Any, expected: Any) -> float:
     return float(np.abs(found - expected).max(initial=0) / (1 + np.abs(expected).max(initial=0)))
 
 
-def crossed(tree: KinematicTree, q: Array, v: Array) -> list[orthogonality.Arm]:
-    return orthogonality.arms(tree, Floats(), floats(q), floats(v))
+def crossed(tree: KinematicTree, q: Array, v: Array) -> list[Arm]:
+    return arms(tree, Floats(), floats(q), floats(v))
 
 
 # ---- against the oracle
@@ -129,7 +130,7 @@ def test_energy(seed: int) -> None:
 def test_coordinate_rates(seed: int) -> None:
     spec, _, numeric, states = case(seed)
     for q, v, _ in states:
-        found = orthogonality.coordinate_rates(numeric.tree, Floats(), floats(q), floats(v))
+        found = coordinate_rates(numeric.tree, Floats(), floats(q), floats(v))
         assert error(found, oracle.coordinate_rates(spec, q, v)) < 1e-15
 
 
@@ -406,7 +407,7 @@ def test_articulated_inertias_label_their_nodes() -> None:
     dag = Dag()
     tree = derive(symbolic_model()).tree(dag, dict.fromkeys(symbolic_model().parameters, 1.5))
     q, v, u = ([dag.symbol(name, i) for i in range(3)] for name in "qvu")
-    solution = forward_dynamics(tree, dag, orthogonality.arms(tree, dag, q, v), u)
+    solution = forward_dynamics(tree, dag, arms(tree, dag, q, v), u)
     labels = {n.label for n in dag_values.reached(solution.unknowns) if n.op != "symbol"}
     assert {"articulated inertia, swing -> rod", "accelerations, turn -> arm"} <= labels
 
@@ -531,8 +532,8 @@ def test_a_derivation_over_nodes_is_the_same_twice() -> None:
         tree = derive(model_of(spec)).tree(dag, {})
         q = [dag.symbol("q", i) for i in range(spec.nq)]
         v = [dag.symbol("v", i) for i in range(spec.nv)]
-        arms = orthogonality.arms(tree, dag, q, v)
-        roots = orthogonality.inverse_dynamics(tree, dag, arms)
+        crossed = arms(tree, dag, q, v)
+        roots = orthogonality.inverse_dynamics(tree, dag, crossed)
         return [(n.index, n.op, repr(n.a), repr(n.b), n.label) for n in dag_values.reached(roots)]
 
     assert listing() == listing()

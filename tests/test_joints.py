@@ -19,14 +19,16 @@ from linegraph import Model, ModelError, derive
 from linegraph.algebra.protocol import Floats
 from linegraph.components.joints import JOINTS, Joint
 from linegraph.dynamics.mass_matrix import mass_matrix
-from linegraph.dynamics.orthogonality import arms, inverse_dynamics, reverse
+from linegraph.dynamics.orthogonality import inverse_dynamics
+from linegraph.kinematics.arms import arms
+from linegraph.spatial.motion import reverse
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from linegraph.components.joints import Motion
     from linegraph.kinematics.links import KinematicTree
     from linegraph.model.builder import BodyHandle
+    from linegraph.spatial.motion import Motion
 
 Array = NDArray[np.complex128]
 

@@ -20,6 +20,7 @@ import linegraph as lg
 from linegraph.components.validation import RESERVED
 from linegraph.dynamics import orthogonality
 from linegraph.dynamics.applied_forces import efforts
+from linegraph.kinematics.arms import arms
 from linegraph.readers import modelfile, urdf
 
 if TYPE_CHECKING:
@@ -119,9 +120,9 @@ def numbers(derivation: Derivation, point: np.random.Generator) -> tuple[Any, ..
     tree.normalise(q)
     v = point.uniform(-1, 1, len(tree.velocities)).tolist()
     chords = numeric.chords(q, v)
-    arms = orthogonality.arms(numeric.tree, numeric.algebra, q, v)
+    crossed = arms(numeric.tree, numeric.algebra, q, v)
     active = orthogonality.generalised_forces(
-        numeric.tree, numeric.algebra, arms, numeric.applied(q, v, driven=True)
+        numeric.tree, numeric.algebra, crossed, numeric.applied(q, v, driven=True)
     )
     Q = efforts(numeric.tree, numeric.algebra, chords, active)
     J = chords.jacobian()

@@ -18,8 +18,8 @@ from linegraph.algebra.protocol import Floats
 from linegraph.dynamics import orthogonality
 from linegraph.dynamics.applied_forces import applied
 from linegraph.dynamics.edge_variables import InverseScheme
-from linegraph.dynamics.orthogonality import arms
 from linegraph.errors import ModelError
+from linegraph.kinematics.arms import arms
 from linegraph.paper.joint_form import paper_matrices
 from linegraph.paper.star_form import PrintedMatrices, equations, printed_matrices
 from linegraph.paper.star_inverse import star_variables
@@ -355,7 +355,7 @@ def test_external_forces_and_joint_efforts(seed: int) -> None:
     numeric = lg.derive(model).numeric(t=TIME)
     q, v = state(numeric, rng)
     algebra = Floats(t=TIME)
-    crossed = orthogonality.arms(numeric.tree, algebra, q, v)
+    crossed = arms(numeric.tree, algebra, q, v)
     acting = applied(model, numeric.tree, algebra, {}, crossed, tuple(q), tuple(v), driven=False)
     expected = orthogonality.inverse_dynamics(numeric.tree, algebra, crossed, None, acting)
     paper = printed_matrices(numeric.tree, algebra, q, v, acting)

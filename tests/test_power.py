@@ -15,7 +15,8 @@ from linegraph import Model, derive
 from linegraph.algebra.jets import Jet, Jets
 from linegraph.algebra.protocol import Floats
 from linegraph.dynamics.mass_matrix import mass_matrix
-from linegraph.dynamics.orthogonality import arms, coordinate_rates, inverse_dynamics
+from linegraph.dynamics.orthogonality import inverse_dynamics
+from linegraph.kinematics.arms import arms, coordinate_rates
 from linegraph.verification.checking import check
 
 

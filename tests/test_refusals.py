@@ -18,11 +18,11 @@ import random_trees as trees
 import sympy
 
 from linegraph import LinegraphError, Model, ModelError, Parameter, SourceError, derive
-from linegraph.components.joints import Moments, Revolute
-from linegraph.components.joints.base import second_moments
+from linegraph.components.joints import Revolute
 from linegraph.dynamics.regularity import is_solid
 from linegraph.kinematics.links import Link
 from linegraph.kinematics.state_layout import Place
+from linegraph.spatial.inertia import Moments, second_moments
 from linegraph.spatial.rotation import Rotation
 from linegraph.spatial.vector import ZERO
 

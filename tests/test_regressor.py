@@ -17,11 +17,11 @@ from emitted import load
 
 from linegraph import Model, ModelError, derive
 from linegraph.cli.main import main
-from linegraph.dynamics.orthogonality import arms
 from linegraph.emission.emit import module_for, render
 from linegraph.identification.regressor import Columns, Station, by_motions, by_wrenches
 from linegraph.identification.standard_parameters import MOMENTS, homes
 from linegraph.identification.tied_columns import tied, ties
+from linegraph.kinematics.arms import arms
 from linegraph.pipeline import variant
 from linegraph.programs.workspace import Functions
 from linegraph.readers import modelfile, urdf

@@ -359,7 +359,7 @@ def printed_reactions_are_those_of_the_derivation(name: str) -> None:
 
 def scheme_of(d: lg.Derivation, q: list[float], v: list[float], a: list[float]) -> Any:
     from linegraph.dynamics.edge_variables import InverseScheme
-    from linegraph.dynamics.orthogonality import arms
+    from linegraph.kinematics.arms import arms
 
     numeric = d.numeric()
     crossed = arms(numeric.tree, numeric.algebra, q, v)

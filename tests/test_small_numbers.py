@@ -11,9 +11,9 @@ from compiled import Compiled
 from emitted import load
 
 import linegraph as lg
-from linegraph.components.joints.base import second_moments
 from linegraph.emission.emit import render
 from linegraph.ir.dag import Dag
+from linegraph.spatial.inertia import second_moments
 from linegraph.spatial.rotation import from_rpy, snapped
 
 if TYPE_CHECKING:

@@ -25,6 +25,7 @@ from linegraph.dynamics.articulated import forward_dynamics
 from linegraph.dynamics.composite_bias import bias_beside_mass
 from linegraph.dynamics.mass_matrix import mass_matrix
 from linegraph.emission.emit import render
+from linegraph.kinematics.arms import arms
 from linegraph.kinematics.working_frames import shortened
 from linegraph.readers import urdf
 from linegraph.spatial.vector import ZERO
@@ -47,7 +48,7 @@ def compare(tree: KinematicTree, q: Any, v: Any, a: Any) -> float:
     """The largest relative error of M, both forms of h, inverse dynamics and, where M allows, v̇."""
     algebra, short = Floats(), shortened(tree).tree
     q, v, a = ([float(x) for x in y] for y in (q, v, a))
-    plain, crossed = (orthogonality.arms(t, algebra, q, v) for t in (tree, short))
+    plain, crossed = (arms(t, algebra, q, v) for t in (tree, short))
     nothing = Applied([(ZERO, ZERO)] * len(short.links), [0] * len(tree.velocities))
     m = np.array(mass_matrix(tree, algebra, plain), dtype=float)
     h = orthogonality.inverse_dynamics(tree, algebra, plain)

@@ -7,6 +7,6 @@ from typing import Any, TypeAlias
 Scalar: TypeAlias = Any
 """A Python number, a DAG node or a sympy expression: whatever + - * / work on.
 
-It is `Any` to the type checker: numbers, nodes and sympy expressions have no common base class, and no protocol
-that mypy accepts for all three.
+To the type checker it is `Any`: numbers, nodes and sympy expressions have no common base class, and mypy has
+no protocol that all three satisfy.
 """

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from linegraph.components.domains import ROTATION, TRANSLATION
 from linegraph.components.parameters import is_number
@@ -14,6 +14,9 @@ from linegraph.errors import ModelError
 from linegraph.graph.multigraph import Edge
 from linegraph.spatial.rotation import IDENTITY_MATRIX, Inertia, about, from_rpy
 from linegraph.spatial.vector import ZERO, Matrix, Vector
+
+if TYPE_CHECKING:
+    from linegraph.spatial.placement import Placement
 
 GROUND = "ground"
 COMMON_NAMES = ("gnd", "0", "earth", "reference", "vss", "world", "base", "datum")
@@ -26,13 +29,6 @@ PHYSICAL = 1e-6
 ROUNDING = 1e-12
 """How far the entries of a computed tensor may be from symmetric, relative to the largest."""
 _AXES = ("xx", "xy", "xz", "yy", "yz", "zz")
-
-
-class Placement(NamedTuple):
-    """A frame on a body: its origin and its axes, both in the body's frame."""
-
-    at: Vector
-    rotation: Matrix
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,13 @@ from dataclasses import dataclass, field
 from math import sqrt
 from typing import TYPE_CHECKING
 
-from linegraph.components.body import GROUND, Placement
+from linegraph.components.body import GROUND
 from linegraph.components.forces import Load
 from linegraph.errors import ModelError
 from linegraph.kinematics.ground_frames import seated
-from linegraph.kinematics.links import Seat, compose, mass_center, resolved
+from linegraph.kinematics.links import Seat, mass_center, resolved
 from linegraph.numeric.loop_closure import at_some_time
+from linegraph.spatial.placement import Placement, compose
 from linegraph.spatial.vector import Vector, transpose
 
 if TYPE_CHECKING:

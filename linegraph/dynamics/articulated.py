@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.algebra.factorization import Solution
 from linegraph.algebra.protocol import set_label
-from linegraph.dynamics.orthogonality import Arm, applied_to, gathered
+from linegraph.dynamics.orthogonality import applied_to, gathered
 from linegraph.kinematics.accelerations import inertia_forces, together
 from linegraph.spatial import vector
 from linegraph.spatial.rotation import square
@@ -26,9 +26,10 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
-    from linegraph.components.joints import Moments
     from linegraph.kinematics.accelerations import Wrench
+    from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import KinematicTree
+    from linegraph.spatial.inertia import Moments
     from linegraph.spatial.rotation import Inertia, Rotation
 
 

@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.components.joints import Joint
-    from linegraph.dynamics.orthogonality import Arm
+    from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import Closure, KinematicTree
 
 

@@ -15,7 +15,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.algebra.protocol import set_label
-from linegraph.components.joints import Moments
 from linegraph.dynamics.mass_matrix import composites
 from linegraph.dynamics.orthogonality import applied_to, projection
 from linegraph.kinematics.accelerations import (
@@ -30,6 +29,7 @@ from linegraph.kinematics.accelerations import (
     together,
 )
 from linegraph.spatial import vector
+from linegraph.spatial.inertia import Moments
 from linegraph.spatial.rotation import square
 from linegraph.spatial.vector import add, cross
 
@@ -38,11 +38,11 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
-    from linegraph.components.joints import Motion
     from linegraph.dynamics.applied_forces import Applied
-    from linegraph.dynamics.orthogonality import Arm
     from linegraph.kinematics.accelerations import Wrench
+    from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import KinematicTree
+    from linegraph.spatial.motion import Motion
     from linegraph.spatial.rotation import Inertia, Rotation
     from linegraph.spatial.vector import Matrix, Vector
 

@@ -42,12 +42,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from linegraph.algebra.scalar import Scalar
-    from linegraph.components.joints import Moments
-    from linegraph.dynamics.orthogonality import Arm
     from linegraph.ir.dag import Dag
     from linegraph.kinematics.accelerations import Wrench
+    from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import KinematicTree
     from linegraph.kinematics.state_layout import Freedom
+    from linegraph.spatial.inertia import Moments
     from linegraph.spatial.vector import Matrix, Vector
 
 Rows = list[list["Scalar"]]

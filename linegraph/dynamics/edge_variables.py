@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from linegraph.algebra.scalar import Scalar
     from linegraph.dynamics.chords import Chords, Equation
     from linegraph.dynamics.law_names import State
-    from linegraph.dynamics.orthogonality import Arm
+    from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import Closure, KinematicTree
     from linegraph.model.builder import Model
     from linegraph.pipeline import Derivation

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 from linegraph.algebra.protocol import set_label
 from linegraph.algebra.scalar import Scalar
-from linegraph.components.joints.base import NO_MOMENTS
-from linegraph.dynamics.orthogonality import Arm, applied_to, gathered, projection
-from linegraph.kinematics.links import KinematicTree, carried, carried_in_plane, joined
+from linegraph.dynamics.orthogonality import applied_to, gathered, projection
 from linegraph.kinematics.state_layout import Freedom
 from linegraph.spatial import vector
+from linegraph.spatial.inertia import NO_MOMENTS, carried, carried_in_plane, joined
 from linegraph.spatial.rotation import IDENTITY_MATRIX, Full, Relabel, Turn
 from linegraph.spatial.vector import ZERO, Matrix, Vector, add, cross, dot
 
@@ -19,7 +18,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from linegraph.algebra.protocol import Algebra
-    from linegraph.components.joints import Moments
+    from linegraph.kinematics.arms import Arm
+    from linegraph.kinematics.links import KinematicTree
+    from linegraph.spatial.inertia import Moments
 
 Rows = list[list[Scalar]]
 Column = Iterator[tuple[Freedom, Scalar]]

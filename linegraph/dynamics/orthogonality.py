@@ -17,136 +17,23 @@ working frame, its mass distribution taken about its joint.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from linegraph.algebra.protocol import set_label
-from linegraph.components.joints import Moments, Motion
 from linegraph.kinematics.accelerations import inertia_forces
-from linegraph.kinematics.links import parallel
-from linegraph.kinematics.state_layout import coordinates, own_rates
 from linegraph.spatial import vector
-from linegraph.spatial.rotation import Full, Rotation, Turn
 from linegraph.spatial.vector import ZERO, Vector, add, cross, dot, subtract
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
 
     from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.dynamics.applied_forces import Applied
-    from linegraph.kinematics.links import KinematicTree, Link
+    from linegraph.kinematics.arms import Arm
+    from linegraph.kinematics.links import KinematicTree
+    from linegraph.spatial.motion import Motion
     from linegraph.spatial.rotation import Inertia
-
-
-class Arm(NamedTuple):
-    """A link's joint at a state, as the walk crosses it: near side to far side.
-
-    Attributes:
-        rotation: the link's working components to its parent's.
-        at: the link's origin in its parent's working frame.
-        motion: the joint's motion, turned round where its edge points to ground.
-        rates: the joint's velocity coordinates.
-        prescribed: their derivatives where the motion is prescribed; none where it is free.
-        level: whether the link turns against ground and not against its parent: in rotation its inertia
-            edge is the branch.
-        moments: the link's mass distribution about its origin, in working axes.
-        turn: of a link whose working axes are still, its own axes to those.
-        angle: of that turn about z.
-    """
-
-    rotation: Rotation
-    at: Vector
-    motion: Motion
-    rates: tuple[Scalar, ...]
-    prescribed: tuple[Scalar, ...]
-    level: bool
-    moments: Moments
-    turn: Rotation = Rotation()
-    angle: Scalar = 0
-
-
-def arms(
-    tree: KinematicTree, algebra: Algebra, q: Iterable[Scalar], v: Iterable[Scalar]
-) -> list[Arm]:
-    """Every joint's motion at (q, v)."""
-    q, v = tuple(q), tuple(v)
-    found: list[Arm] = []
-    for link in tree.links:
-        set_label(algebra, f"joint {link.joint.name}")
-        positions, rates = coordinates(link.place, q, v)
-        if link.place.level:
-            rates = own_rates(link.place, v)
-        motion = link.joint.motion(algebra, positions, rates)
-        if not link.forward:
-            motion = reverse(motion)
-        near = found[link.parent].turn if link.parent >= 0 else Rotation()
-        if link.in_space:
-            rotation = _against_parent(tree, found, link, motion.rotation)
-        else:
-            rotation = link.rotation @ motion.rotation
-        at = near.out(add(link.at, link.rotation.out(motion.displacement)))
-        prescribed = tuple(x.ddx for x in link.place.drive)
-        arm = Arm(rotation, at, motion, rates, prescribed, link.place.level, link.moments)
-        if link.still or (near.factors and parallel(link)):
-            (angle,) = positions
-            arm = _in_a_run(algebra, link, arm, found, angle if link.forward else -angle)
-        found.append(arm)
-    return found
-
-
-def _in_a_run(algebra: Algebra, link: Link, arm: Arm, found: Sequence[Arm], angle: Scalar) -> Arm:
-    """A link in a run of parallel axes: its angle is measured from the first one's near side.
-
-    With L the constant rotation to the joint, which keeps z or turns it round,
-    ``Rz(a) L Rz(b) = L Rz(b + a)`` or ``L Rz(b - a)``.
-    """
-    rotation = link.rotation
-    if link.parent >= 0 and found[link.parent].turn.factors:
-        along = rotation.out((0, 0, 1))[2]
-        angle = angle + along * found[link.parent].angle
-    turn = Rotation((Turn(2, algebra.cos(angle), algebra.sin(angle)),))
-    if not link.still:
-        return arm._replace(rotation=rotation @ turn)
-    mass, first, second, about = arm.moments
-    second = second if link.in_plane else turn.congruence(second)
-    seen = Moments(mass, turn.out(first), second, (None, None, about[2]))
-    return arm._replace(rotation=rotation, moments=seen, turn=turn, angle=angle)
-
-
-def _against_parent(
-    tree: KinematicTree, crossed: list[Arm], link: Link, absolute: Rotation
-) -> Rotation:
-    """The rotation to the parent's axes of a link whose rotation to ground axes is given."""
-    outward: list[Rotation] = []
-    i = link.parent
-    while i >= 0:
-        near = tree.links[i]
-        outward.append(crossed[i].motion.rotation if near.in_space else crossed[i].rotation)
-        i = -1 if near.in_space else near.parent
-    matrix = absolute.matrix()
-    for rotation in reversed(outward):
-        matrix = vector.transpose(
-            tuple(rotation.into(column) for column in vector.transpose(matrix))  # type: ignore[arg-type]
-        )
-    return Rotation((Full(matrix),))
-
-
-def reverse(motion: Motion) -> Motion:
-    """The motion of the tail as seen from the head: the joint crossed against its orientation."""
-    r = motion.rotation
-    at = vector.negate(r.into(motion.displacement))
-
-    def moment(s: Vector, u: Vector) -> Vector:
-        return r.out(vector.negate(add(cross(s, at), u)))
-
-    return Motion(
-        r.inverse(),
-        at,
-        tuple(r.out(vector.negate(s)) for s in motion.angular),
-        tuple(moment(s, u) for s, u in zip(motion.angular, motion.linear, strict=True)),
-        r.out(vector.negate(motion.angular_bias)),
-        moment(motion.angular_bias, motion.linear_bias),
-    )
 
 
 def inverse_dynamics(
@@ -218,25 +105,6 @@ def energy(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> tuple[S
         spin = add(applied_to(arm.moments.inertia, angular), cross(first, linear))
         kinetic = kinetic + (dot(linear, momentum) + dot(angular, spin))
     return kinetic / 2, _potential(tree, algebra, crossed)
-
-
-def coordinate_rates(
-    tree: KinematicTree, algebra: Algebra, q: Iterable[Scalar], v: Iterable[Scalar]
-) -> list[Scalar]:
-    """``q̇ = N(q) v``."""
-    q, v = tuple(q), tuple(v)
-    rates: list[Scalar] = [0] * len(tree.positions)
-    for link in tree.links:
-        places = link.place.positions
-        if any(f.ratio != 1 or f.offset != 0 for f in places):
-            continue
-        at, own_v = coordinates(link.place, q, v)
-        if link.place.level:
-            own_v = own_rates(link.place, v)
-        own = link.joint.rates(algebra, at, own_v) if places else ()
-        for freedom, rate in zip(places, own, strict=True):
-            rates[freedom.index] = rate
-    return rates
 
 
 def _potential(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> Scalar:

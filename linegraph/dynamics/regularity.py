@@ -14,18 +14,18 @@ from typing import TYPE_CHECKING
 from linegraph.algebra.protocol import Floats
 from linegraph.components.parameters import sample_values
 from linegraph.dynamics.mass_matrix import composites, mass_matrix
-from linegraph.dynamics.orthogonality import arms
 from linegraph.errors import ModelError
+from linegraph.kinematics.arms import arms
 from linegraph.kinematics.tree import kinematic_tree
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from linegraph.components.joints import Moments
-    from linegraph.dynamics.orthogonality import Arm
     from linegraph.formulation.formulate import Formulation
+    from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import KinematicTree, Link
     from linegraph.model.builder import Model
+    from linegraph.spatial.inertia import Moments
 
     Entry = tuple[int, int, float]
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from linegraph.dynamics.chords import Chords
     from linegraph.dynamics.law_names import State
     from linegraph.dynamics.network_state import Exchange
-    from linegraph.dynamics.orthogonality import Arm
+    from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import KinematicTree
     from linegraph.model.builder import Model
 

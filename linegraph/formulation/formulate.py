@@ -36,10 +36,10 @@ from linegraph.model.choices import ABSOLUTE, ABSOLUTE_ANGLE, AUTOMATIC
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from linegraph.components.scalar.branches import Branch
     from linegraph.graph.multigraph import Edge, SystemGraph
     from linegraph.model.builder import Model
     from linegraph.networks import Network
-    from linegraph.networks.edges import Branch
 
 INERTIA_WEIGHT = 7.0
 NOTHING_ACTS = 0.3
@@ -269,6 +269,6 @@ def _network_edges(model: Model) -> Sequence[Branch]:
     """The edges of a model's components."""
     if not model.components:
         return ()
-    from linegraph.networks.edges import edges_of
+    from linegraph.components.scalar.branches import edges_of
 
     return edges_of(model.components)

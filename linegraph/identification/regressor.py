@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
-    from linegraph.components.body import Placement
-    from linegraph.dynamics.orthogonality import Arm
+    from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import KinematicTree
+    from linegraph.spatial.placement import Placement
 
 Columns = dict[int, list["Scalar"]]
 """Of a link, by velocity, the coefficients of its ten moments."""

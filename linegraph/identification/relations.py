@@ -25,9 +25,9 @@ from itertools import combinations_with_replacement
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.algebra.sampled import Row, closed, kernel, reduced
-from linegraph.components.joints.base import Moments
 from linegraph.identification.standard_parameters import MOMENTS
-from linegraph.kinematics.links import carried, inverse
+from linegraph.spatial.inertia import Moments, carried
+from linegraph.spatial.placement import inverse
 from linegraph.spatial.rotation import Full, Rotation
 from linegraph.spatial.vector import ZERO, Matrix, Vector, add, cross, dot, scale, subtract
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from linegraph.algebra.scalar import Scalar
-    from linegraph.components.body import Placement
+    from linegraph.spatial.placement import Placement
 
 PAIRS = tuple(combinations_with_replacement(range(3), 2))
 """The places of xx, xy, xz, yy, yz, zz."""

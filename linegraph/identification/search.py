@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.algebra.protocol import Floats
 from linegraph.algebra.sampled import WEAK, Traced, given
-from linegraph.components.body import Placement
-from linegraph.dynamics.orthogonality import arms
 from linegraph.errors import ModelError
 from linegraph.identification.base_parameters import BaseParameters
 from linegraph.identification.regressor import Station, by_motions
 from linegraph.identification.relations import PREFERRED, Member, Twist, null_vectors, without
 from linegraph.identification.standard_parameters import MOMENTS, Axis, axes, homes, quantities
+from linegraph.kinematics.arms import arms
+from linegraph.spatial.placement import Placement
 from linegraph.spatial.vector import negate
 
 if TYPE_CHECKING:

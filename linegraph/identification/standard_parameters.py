@@ -18,12 +18,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from linegraph.components.body import Placement
 from linegraph.components.forces import Damper, Friction
-from linegraph.components.joints.base import NO_MOMENTS
 from linegraph.components.parameters import names_in, resolver
 from linegraph.ir.program import Quantity
-from linegraph.kinematics.links import body_moments, compose, inverse, joined
+from linegraph.kinematics.links import body_moments
+from linegraph.spatial.inertia import NO_MOMENTS, joined
+from linegraph.spatial.placement import Placement, compose, inverse
 from linegraph.spatial.rotation import IDENTITY_MATRIX
 from linegraph.spatial.vector import ZERO
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.algebra.protocol import set_label
-from linegraph.components.joints import Motion
 from linegraph.spatial import vector
+from linegraph.spatial.motion import Motion
 from linegraph.spatial.vector import ZERO, Vector, add, cross
 
 if TYPE_CHECKING:
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
-    from linegraph.components.joints import Moments
-    from linegraph.dynamics.orthogonality import Arm
+    from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import KinematicTree
+    from linegraph.spatial.inertia import Moments
     from linegraph.spatial.rotation import Inertia
 
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from linegraph.components.joints.base import NO_MOMENTS
 from linegraph.components.joints.composition import joined
-from linegraph.kinematics.links import KinematicTree, Link, carried
+from linegraph.kinematics.links import KinematicTree, Link
 from linegraph.kinematics.state_layout import Place
+from linegraph.spatial.inertia import NO_MOMENTS, carried
 from linegraph.spatial.rotation import Relabel, Rotation
 from linegraph.spatial.vector import ZERO
 

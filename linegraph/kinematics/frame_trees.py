@@ -10,23 +10,16 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from linegraph.components.body import MASS_CENTER, Placement
+from linegraph.components.body import MASS_CENTER
 from linegraph.components.joints import Fixed
-from linegraph.components.joints.base import NO_MOMENTS
 from linegraph.components.validation import nearest
 from linegraph.errors import ModelError
-from linegraph.kinematics.links import (
-    KinematicTree,
-    Link,
-    Seat,
-    carried,
-    compose,
-    mass_center,
-    resolved,
-)
+from linegraph.kinematics.links import KinematicTree, Link, Seat, mass_center, resolved
 from linegraph.kinematics.state_layout import Place
 from linegraph.kinematics.working_frames import DUST, shortened
 from linegraph.spatial import vector
+from linegraph.spatial.inertia import NO_MOMENTS, carried
+from linegraph.spatial.placement import Placement, compose
 from linegraph.spatial.rotation import IDENTITY_MATRIX, Rotation, rotation_of
 
 if TYPE_CHECKING:
@@ -34,8 +27,8 @@ if TYPE_CHECKING:
     from typing import Any
 
     from linegraph.algebra.scalar import Scalar
-    from linegraph.components.joints import Moments
     from linegraph.model.builder import Model
+    from linegraph.spatial.inertia import Moments
     from linegraph.spatial.vector import Vector
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.components.constraints.base import Pose
-    from linegraph.dynamics.orthogonality import Arm
+    from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import KinematicTree, Seat
     from linegraph.kinematics.state_layout import Freedom
 

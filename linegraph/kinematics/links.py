@@ -13,23 +13,24 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.algebra.formula import Formula
-from linegraph.algebra.protocol import Constants
 from linegraph.algebra.scalar import Scalar
-from linegraph.components.body import Body, Placement
-from linegraph.components.joints import Joint, Moments
-from linegraph.components.joints.base import Restriction, point_apart, second_moments
+from linegraph.components.joints import Joint
 from linegraph.components.parameters import Parameter
 from linegraph.spatial import vector
-from linegraph.spatial.rotation import Diagonal, Inertia, Rotation, product, rotation_of, snapped
+from linegraph.spatial.inertia import Moments, carried, joined, point_apart, second_moments
+from linegraph.spatial.rotation import Inertia, Rotation, rotation_of
 from linegraph.spatial.vector import ZERO, Matrix, Vector
 
 if TYPE_CHECKING:
     from linegraph.algebra.jets import Jet
+    from linegraph.components.body import Body
     from linegraph.components.constraints import Constraint
     from linegraph.components.constraints.relation import Relation
+    from linegraph.components.joints.base import Restriction
     from linegraph.ir.program import Quantity
     from linegraph.kinematics.state_layout import Freedom, Layout, Place
     from linegraph.networks import Network
+    from linegraph.spatial.placement import Placement
 
 Resolve = Callable[[Any], Scalar]
 
@@ -251,66 +252,6 @@ def upright(link: Link) -> bool:
     return link.rotation.out((0, 0, 1)) in ((0, 0, 1), (0, 0, -1))
 
 
-def carried(moments: Moments, rotation: Rotation, at: Vector) -> Moments:
-    """Moments about an inner origin, resolved about an outer one and in outer axes.
-
-    With b the rotated first moment and f = b + m at the one about the outer origin, the second moments gain
-    at b^T + f at^T.
-    """
-    m = moments.mass
-    b = rotation.out(moments.first)
-    xx, xy, xz, yy, yz, zz = rotation.congruence(moments.second)
-    first = vector.add(b, vector.scale(m, at))
-    return Moments(
-        m,
-        first,
-        (
-            xx + _spread(at[0], b[0], first[0]),
-            xy + (at[0] * b[1] + at[1] * first[0]),
-            xz + (at[0] * b[2] + at[2] * first[0]),
-            yy + _spread(at[1], b[1], first[1]),
-            yz + (at[1] * b[2] + at[2] * first[1]),
-            zz + _spread(at[2], b[2], first[2]),
-        ),
-        _about(moments, rotation, at, vector.add(b, first)),
-    )
-
-
-def _about(moments: Moments, rotation: Rotation, at: Vector, twice: Vector) -> Diagonal:
-    """The diagonal of J, where it was known, in outer axes and about the outer origin."""
-    known = rotation.diagonal(moments.about)
-    p = tuple(x * y for x, y in zip(at, twice, strict=True))
-    x, y, z = (
-        None if j is None else j + (p[(k + 1) % 3] + p[(k + 2) % 3]) for k, j in enumerate(known)
-    )
-    return (x, y, z)
-
-
-def carried_in_plane(moments: Moments, rotation: Rotation, at: Vector) -> Moments:
-    """The same where only the inertia about z counts, on both sides: ``J + 2 at . b + m at . at``."""
-    b = rotation.out(moments.first)
-    first = vector.add(b, vector.scale(moments.mass, at))
-    about = moments.inertia[5]
-    # one after the other: with the first, the sum is what M has beside its diagonal
-    about = about + (at[0] * b[0] + at[1] * b[1])
-    about = about + (at[0] * first[0] + at[1] * first[1])
-    return Moments(moments.mass, first, (about, 0, 0, 0, 0, 0), (None, None, about))
-
-
-def _spread(at: Scalar, inner: Scalar, outer: Scalar) -> Scalar:
-    """``at (inner + outer)``; without mass the two are one, whose product with an arm M needs, too."""
-    shared = inner is outer and not isinstance(at, (int, float))
-    return 2 * (at * inner) if shared else at * (inner + outer)
-
-
-def joined(a: Moments, b: Moments) -> Moments:
-    """The moments of two bodies together, about one origin and in one frame."""
-    second = tuple(x + y for x, y in zip(a.second, b.second, strict=True))
-    known = zip(a.about, b.about, strict=True)
-    x, y, z = (None if j is None or k is None else j + k for j, k in known)
-    return Moments(a.mass + b.mass, vector.add(a.first, b.first), second, (x, y, z))
-
-
 def body_moments(body: Body, resolve: Resolve, pose: Placement) -> Moments:
     """A body's mass distribution about the origin of a frame in which the body stands at `pose`.
 
@@ -352,36 +293,6 @@ def central_inertia(body: Body, resolve: Resolve) -> Inertia:
         *(x * x + z * z, -y * z, x * x + y * y),
     )
     return tuple(a - mass * b for a, b in zip(given, shift, strict=True))
-
-
-def compose(outer: Placement, inner: Placement, snap: float) -> Placement:
-    """A frame given in an inner frame, seen from the outer one."""
-    at = vector.add(outer.at, swept(rotation_of(outer.rotation).out(inner.at), inner.at))
-    return Placement(at, snapped(product(outer.rotation, inner.rotation), snap))
-
-
-def inverse(placement: Placement) -> Placement:
-    """The outer frame seen from the inner one."""
-    back = vector.transpose(placement.rotation)
-    return Placement(vector.negate(rotation_of(back).out(placement.at)), back)
-
-
-def moved(near: Placement, joint: Joint, value: Any, snap: float) -> Placement:
-    """The head frame of a one-freedom joint at a fixed value of its coordinate."""
-    alignment = Placement(ZERO, joint.alignment())
-    motion = joint.motion(Constants(), (value,), (0,))
-    turn = Placement(motion.displacement, snapped(motion.rotation.matrix(), snap))
-    there = compose(compose(near, alignment, snap), turn, snap)
-    return compose(there, inverse(alignment), snap)
-
-
-def swept(turned: Vector, original: Vector, within: float = 4e-16) -> Vector:
-    """Drop the rounding dust, of this part of the original, that is left where an exact zero belongs."""
-    if not all(isinstance(x, (int, float)) for x in (*turned, *original)):
-        return turned
-    scale = max(abs(x) for x in original)
-    x, y, z = (0 if abs(c) <= within * scale else c for c in turned)
-    return (x, y, z)
 
 
 def resolved(a: Vector, resolve: Resolve) -> Vector:

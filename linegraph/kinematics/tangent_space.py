@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.dynamics import orthogonality
+from linegraph.kinematics.arms import coordinate_rates
 from linegraph.kinematics.state_layout import own_rates
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def chain(tree: KinematicTree, algebra: Algebra, q: Sequence[Scalar]) -> dict[Sy
     size = len(tree.velocities)
     for k, change in enumerate(changes(tree)):
         unit = [int(j == k) for j in range(size)]
-        for i, slope in enumerate(orthogonality.coordinate_rates(tree, algebra, q, unit)):
+        for i, slope in enumerate(coordinate_rates(tree, algebra, q, unit)):
             if slope != 0:
                 found["q", i][change] = slope
     return found

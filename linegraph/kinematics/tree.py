@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from linegraph.algebra.protocol import set_label
-from linegraph.components.body import GROUND, Placement
-from linegraph.components.joints.base import NO_MOMENTS, TORQUES, Restriction
+from linegraph.components.body import GROUND
+from linegraph.components.joints.base import TORQUES, Restriction
 from linegraph.components.parameters import resolver
 from linegraph.errors import ModelError
 from linegraph.formulation.absolute import floating, turning
@@ -17,13 +17,12 @@ from linegraph.kinematics.links import (
     Link,
     Seat,
     body_moments,
-    compose,
-    inverse,
-    joined,
     mass_center,
     resolved,
 )
 from linegraph.kinematics.state_layout import Layout, layout_of
+from linegraph.spatial.inertia import NO_MOMENTS, joined
+from linegraph.spatial.placement import Placement, compose, inverse
 from linegraph.spatial.rotation import IDENTITY_MATRIX, Rotation, rotation_of
 from linegraph.spatial.vector import ZERO
 

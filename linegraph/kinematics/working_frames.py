@@ -18,20 +18,18 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from linegraph.components.body import Placement
 from linegraph.kinematics.expansion import expanded
 from linegraph.kinematics.links import (
     KinematicTree,
     Link,
-    carried,
-    compose,
     handed_on,
     links_in_plane,
     parallel,
-    swept,
     upright,
 )
 from linegraph.spatial import vector
+from linegraph.spatial.inertia import carried
+from linegraph.spatial.placement import Placement, compose, swept
 from linegraph.spatial.rotation import (
     IDENTITY_MATRIX,
     Rotation,
@@ -47,8 +45,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from linegraph.algebra.scalar import Scalar
-    from linegraph.components.joints import Moments
-    from linegraph.dynamics.orthogonality import Arm
+    from linegraph.kinematics.arms import Arm
+    from linegraph.spatial.inertia import Moments
 
 DUST = 4e-15
 """Rounding of a product of constant rotations."""

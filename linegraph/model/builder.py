@@ -6,7 +6,7 @@ from collections import ChainMap
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from linegraph.components.body import GROUND, MASS_CENTER, Body, Placement, inertia_of, unit
+from linegraph.components.body import GROUND, MASS_CENTER, Body, inertia_of, unit
 from linegraph.components.constraints import Blade, Constraint, Driver, Rod, Rolling, aligned
 from linegraph.components.constraints.relation import Relation
 from linegraph.components.forces import Damper, Element, Friction, Law, Load, Spring, Stop
@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from linegraph.graph.multigraph import SystemGraph
+    from linegraph.spatial.placement import Placement
 
 STANDARD_GRAVITY: Vector = (0, 0, -9.81)
 SNAP = 1e-11

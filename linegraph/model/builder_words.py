@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 
-from linegraph.components.body import Placement, orientation
+from linegraph.components.body import orientation
 from linegraph.components.joints import Joint
 from linegraph.components.validation import finite, rotation_matrix, triple, vector
+from linegraph.spatial.placement import Placement
 from linegraph.spatial.rotation import snapped
 from linegraph.spatial.vector import ZERO
 

@@ -87,7 +87,7 @@ def locked(model: Model, name: str, value: float) -> Fixed:
     Raises:
         ModelError: no such joint, or it has no coordinate or more than one.
     """
-    from linegraph.kinematics.links import moved
+    from linegraph.components.joints.holding import moved
 
     who = f'joint "{name}"'
     joints = {joint.name: joint for joint in model.joints}

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.components.body import GROUND, MASS_CENTER, Placement
+from linegraph.components.body import GROUND, MASS_CENTER
 from linegraph.components.domains import ROTATION, TRANSLATION
 from linegraph.components.forces import Element, Load
+from linegraph.components.scalar.branches import edges_of, terminal_graph
 from linegraph.components.validation import nearest
 from linegraph.errors import ModelError
 from linegraph.graph.multigraph import Edge, SystemGraph, unite
-from linegraph.networks.edges import edges_of, terminal_graph
+from linegraph.spatial.placement import Placement
 from linegraph.spatial.rotation import IDENTITY_MATRIX
 from linegraph.spatial.vector import ZERO
 

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 from linegraph.algebra.differentiation import Replay, substitution
 from linegraph.algebra.residues import Residues
 from linegraph.components.domains import DOMAINS
+from linegraph.components.scalar.branches import dangling, edges_of, projections
 from linegraph.errors import ModelError
 from linegraph.ir.program import Quantity
-from linegraph.networks.edges import dangling, edges_of, projections
 from linegraph.networks.laws import laws_of
 from linegraph.networks.network import RATE, SHAFT_RATE, Network, State
 from linegraph.networks.rates import Rates
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from linegraph.algebra.differentiation import Symbol
     from linegraph.algebra.scalar import Scalar
     from linegraph.components.domains import Domain
+    from linegraph.components.scalar.branches import Branch
     from linegraph.model.builder import Model
-    from linegraph.networks.edges import Branch
     from linegraph.networks.laws import Laws, Store
     from linegraph.networks.selection import Selection
     from linegraph.networks.static import Statics

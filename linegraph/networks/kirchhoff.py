@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.differentiation import Symbol
     from linegraph.algebra.scalar import Scalar
+    from linegraph.components.scalar.branches import Branch
     from linegraph.graph.forest import Topology
     from linegraph.ir.dag import Dag
-    from linegraph.networks.edges import Branch
 
 
 class Kirchhoff:

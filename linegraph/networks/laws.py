@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from linegraph.algebra.scalar import Scalar
+    from linegraph.components.scalar.branches import Branch
     from linegraph.graph.multigraph import Projection
     from linegraph.model.builder import Model
-    from linegraph.networks.edges import Branch
 
 DISSIPATIVE = ("damper", "friction")
 """Force elements that turn all they take in into heat."""

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from linegraph.algebra.differentiation import Symbol
     from linegraph.algebra.scalar import Scalar
     from linegraph.components.scalar.base import Component
+    from linegraph.components.scalar.branches import Branch
     from linegraph.graph.forest import Topology
     from linegraph.ir.dag import Dag
     from linegraph.ir.program import Quantity
-    from linegraph.networks.edges import Branch
     from linegraph.networks.laws import Laws
 
 INPUTS = ("u", "du", "ddu")

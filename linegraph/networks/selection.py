@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.differentiation import Symbol
     from linegraph.components.scalar.base import Component
+    from linegraph.components.scalar.branches import Branch
     from linegraph.graph.multigraph import Projection
-    from linegraph.networks.edges import Branch
     from linegraph.networks.laws import Laws, Static, Store
 
 MOST_NAMED = 8

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.differentiation import Calculus, Symbol
     from linegraph.algebra.scalar import Scalar
-    from linegraph.networks.edges import Branch
+    from linegraph.components.scalar.branches import Branch
     from linegraph.networks.laws import Laws, Static
     from linegraph.networks.selection import Selection
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from linegraph.algebra.differentiation import Calculus, Symbol
     from linegraph.algebra.scalar import Scalar
     from linegraph.components.scalar.base import Component
-    from linegraph.networks.edges import Branch
+    from linegraph.components.scalar.branches import Branch
     from linegraph.networks.laws import At, Laws
 
 TRANSDUCERS = {

@@ -10,7 +10,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from linegraph.components.joints import Free, Spherical
-from linegraph.dynamics.orthogonality import arms
+from linegraph.kinematics.arms import arms
 from linegraph.kinematics.ground_frames import (
     GROUND_FRAME,
     Frame,

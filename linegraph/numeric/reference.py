@@ -20,6 +20,7 @@ from linegraph.dynamics.whole_system import (
     united_inverse_dynamics,
     united_mass_matrix,
 )
+from linegraph.kinematics.arms import Arm, arms, coordinate_rates
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -109,7 +110,7 @@ class Numeric:
 
     def coordinate_rates(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
         """N(q) v."""
-        return orthogonality.coordinate_rates(self.tree, self.algebra, q, v)
+        return coordinate_rates(self.tree, self.algebra, q, v)
 
     def constraints(self, q: Sequence[float]) -> list[float]:
         """φ(q, t), one for each constraint with an equation of position."""
@@ -153,5 +154,5 @@ class Numeric:
             self.model, self.tree, self.algebra, self.parameters, crossed, *state, driven=driven
         )
 
-    def _arms(self, q: Sequence[float], v: Sequence[float]) -> list[orthogonality.Arm]:
-        return orthogonality.arms(self.tree, self.algebra, q, v)
+    def _arms(self, q: Sequence[float], v: Sequence[float]) -> list[Arm]:
+        return arms(self.tree, self.algebra, q, v)

@@ -13,8 +13,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-from linegraph.dynamics.orthogonality import Arm, arms
 from linegraph.errors import ModelError
+from linegraph.kinematics.arms import Arm, arms
 from linegraph.spatial import vector
 from linegraph.spatial.rotation import IDENTITY_MATRIX, Full, Inertia, product, square
 from linegraph.spatial.vector import ZERO, Matrix, Vector, add, cross, dot, scale, subtract

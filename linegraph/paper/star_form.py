@@ -17,8 +17,8 @@ from dataclasses import dataclass, fields
 from functools import reduce
 from typing import TYPE_CHECKING, Any
 
-from linegraph.dynamics.orthogonality import arms
 from linegraph.errors import ModelError
+from linegraph.kinematics.arms import arms
 from linegraph.paper.joint_form import (
     Resolved,
     angular_remainder,
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.dynamics.applied_forces import Applied
-    from linegraph.dynamics.orthogonality import Arm
+    from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import KinematicTree
 
 Integers = list[list[int]]

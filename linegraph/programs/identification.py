@@ -31,8 +31,8 @@ from linegraph.ir.program import (
     assemble,
     operations_of,
 )
-from linegraph.kinematics.links import compose, inverse
 from linegraph.kinematics.working_frames import DUST
+from linegraph.spatial.placement import compose, inverse
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

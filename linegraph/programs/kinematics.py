@@ -18,10 +18,10 @@ from linegraph.dynamics.momentum import (
     scaled,
     shared,
 )
-from linegraph.dynamics.orthogonality import arms
 from linegraph.dynamics.regularity import sample_tree
 from linegraph.errors import ModelError
 from linegraph.ir.program import Program, Result, Routine, needed_for
+from linegraph.kinematics.arms import arms
 from linegraph.kinematics.frame_trees import NamedFrame, Tipped, seat_of, tipped
 from linegraph.kinematics.twists import (
     Column,

@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING, NamedTuple
 from linegraph.algebra.factorization import Factors, factored
 from linegraph.algebra.protocol import Floats
 from linegraph.components.parameters import resolver, sample_values
-from linegraph.dynamics.orthogonality import arms
 from linegraph.dynamics.regularity import SINGULAR, sample_tree
 from linegraph.errors import ModelError
 from linegraph.ir.dag import Node
 from linegraph.ir.program import Argument, Call, Check, Program, Result, Routine
 from linegraph.ir.statuses import counted
+from linegraph.kinematics.arms import arms
 from linegraph.kinematics.frame_trees import seat_of, tipped
 from linegraph.kinematics.twists import Outlook, columns, matrix
 from linegraph.programs import loops as closed_programs

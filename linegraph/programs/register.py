@@ -14,6 +14,7 @@ from linegraph.errors import ModelError
 from linegraph.ir.program import Argument, Call, Module, Program, Quantity, Result, Routine
 from linegraph.ir.prologue import COUNT, with_prologue
 from linegraph.ir.sums import with_sums_collected
+from linegraph.kinematics.arms import arms, coordinate_rates
 from linegraph.programs import derivatives as derivative_programs
 from linegraph.programs import division, pivots
 from linegraph.programs import edges as edge_programs
@@ -268,7 +269,7 @@ def _solved(
 
 
 def _coordinate_rates(f: Functions) -> Program:
-    rates = orthogonality.coordinate_rates(f.tree, f.dag, f.q, f.v)
+    rates = coordinate_rates(f.tree, f.dag, f.q, f.v)
     result = Result("qdot", (len(rates),), tuple(rates), "derivatives of q")
     about = "Coordinate rates qdot = N(q) v."
     return f.program("coordinate_rates", about, ("q", "v"), (result,))
@@ -284,7 +285,7 @@ def energy_remark(model: Model, network: Network | None) -> str:
 
 
 def _energy(f: Functions) -> Program:
-    crossed = orthogonality.arms(f.tree, f.dag, f.q, f.v)
+    crossed = arms(f.tree, f.dag, f.q, f.v)
     kinetic, potential = orthogonality.energy(f.tree, f.dag, crossed)
     stored = potential + f.passive.potential
     about = (

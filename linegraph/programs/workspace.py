@@ -31,6 +31,7 @@ from linegraph.ir.program import (
     operations_of,
     reads,
 )
+from linegraph.kinematics.arms import Arm, arms, coordinate_rates
 from linegraph.kinematics.working_frames import shortened
 from linegraph.programs import networks as network_programs
 
@@ -209,14 +210,14 @@ class Functions:
         )
 
     @cached_property
-    def arms(self) -> list[orthogonality.Arm]:
+    def arms(self) -> list[Arm]:
         """The joints' motions at (q, v), in the frames of the walk."""
-        return orthogonality.arms(self.tree, self.dag, self.q, self.v)
+        return arms(self.tree, self.dag, self.q, self.v)
 
     @cached_property
-    def crossed(self) -> list[orthogonality.Arm]:
+    def crossed(self) -> list[Arm]:
         """The same in the shortest frames: for M and h."""
-        return orthogonality.arms(self.short, self.dag, self.q, self.v)
+        return arms(self.short, self.dag, self.q, self.v)
 
     def along(self, acting: Applied) -> list[Scalar]:
         """What forces do along v."""
@@ -279,7 +280,7 @@ class Functions:
     @cached_property
     def chords(self) -> Chords:
         """The constraints at (q, v)."""
-        rates = orthogonality.coordinate_rates(self.tree, self.dag, self.q, self.v)
+        rates = coordinate_rates(self.tree, self.dag, self.q, self.v)
         state = (tuple(self.q), tuple(self.v))
         found = relations(self.model, self.tree, self.dag, self.values, state, rates)
         return Chords(self.tree, self.dag, self.arms, self.values, found)

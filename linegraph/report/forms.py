@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from linegraph.dynamics.regularity import cause
 from linegraph.errors import ModelError
 from linegraph.ir.program import Result, leaves, operations_of
+from linegraph.kinematics.arms import coordinate_rates
 from linegraph.notation.plain import Plain
 from linegraph.notation.tree import (
     ONE,
@@ -230,10 +231,9 @@ class Forms:
                     "The velocities of mechanics are the rates of the coordinates: N is the identity."
                 )
             ]
-        from linegraph.dynamics import orthogonality
 
         f = self._functions
-        rates = orthogonality.coordinate_rates(f.tree, f.dag, f.q, f.v)
+        rates = coordinate_rates(f.tree, f.dag, f.q, f.v)
         rows = [
             Row(Name(n.letter, n.subs, n.dots + 1), self._nodes(x))
             for n, x in zip(subject.symbols(subject.q_names), rates, strict=True)

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from linegraph.components.joints import Joint
-    from linegraph.networks.edges import Branch
+    from linegraph.components.scalar.branches import Branch
     from linegraph.report.subject import Subject
 
 

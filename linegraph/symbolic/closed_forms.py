@@ -21,6 +21,7 @@ from linegraph.dynamics.symbol_names import MULTIPLIERS
 from linegraph.dynamics.whole_system import exchange_at, network_entries, united_mass_matrix
 from linegraph.errors import ModelError
 from linegraph.ir.dag import Dag
+from linegraph.kinematics.arms import Arm, arms, coordinate_rates
 from linegraph.notation import Notation
 from linegraph.paper.joint_form import PaperMatrices, paper_matrices
 from linegraph.paper.star_form import PrintedMatrices, printed_matrices
@@ -100,8 +101,8 @@ class Symbolic:
         return self._of_dag("q"), self._of_dag("v")
 
     @cached_property
-    def _arms(self) -> list[orthogonality.Arm]:
-        return orthogonality.arms(self.tree, self.dag, *self._state)
+    def _arms(self) -> list[Arm]:
+        return arms(self.tree, self.dag, *self._state)
 
     def _matrix(self, what: str, rows: Sequence[Sequence[Scalar]], columns: int = 1) -> Expr:
         """The closed forms of a matrix."""
@@ -289,7 +290,7 @@ class Symbolic:
 
     @cached_property
     def _rates(self) -> list[Scalar]:
-        return orthogonality.coordinate_rates(self.tree, self.dag, *self._state)
+        return coordinate_rates(self.tree, self.dag, *self._state)
 
     @cached_property
     def _exchange(self) -> Exchange | None:

@@ -1,6 +1,6 @@
 """The register of joint types: one file each, one line here, one line in `model.builder.Model`."""
 
-from linegraph.components.joints.base import Joint, Moments, Motion
+from linegraph.components.joints.base import Joint
 from linegraph.components.joints.compound import Compound
 from linegraph.components.joints.cylindrical import Cylindrical
 from linegraph.components.joints.fixed import Fixed
@@ -36,8 +36,6 @@ __all__ = [
     "Free",
     "Helical",
     "Joint",
-    "Moments",
-    "Motion",
     "Planar",
     "Prismatic",
     "Revolute",

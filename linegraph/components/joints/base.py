@@ -13,14 +13,13 @@ coordinates are where they are none of the state.
 
 from __future__ import annotations
 
-import math
 from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from linegraph.errors import ModelError
-from linegraph.spatial.rotation import IDENTITY_MATRIX, Diagonal, Inertia, Rotation
-from linegraph.spatial.vector import ZERO, Matrix, Vector
+from linegraph.spatial.inertia import NO_MOMENTS, Moments
+from linegraph.spatial.rotation import IDENTITY_MATRIX, Rotation
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -28,80 +27,12 @@ if TYPE_CHECKING:
     from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.ir.program import Quantity
+    from linegraph.spatial.motion import Motion
+    from linegraph.spatial.vector import Matrix, Vector
 
 
 BY_INPUT = "input"
 """What a joint's drive says to take its motion from inputs."""
-
-
-class Motion(NamedTuple):
-    """The relative motion a joint allows, head relative to tail.
-
-    With relative angular velocity w = sum_a angular[a] v_a and relative velocity of the head's origin
-    u = sum_a linear[a] v_a, both in head axes, their derivatives as seen in the head frame are
-    sum_a angular[a] v̇_a + angular_bias and sum_a linear[a] v̇_a + linear_bias.
-
-    Attributes:
-        rotation: head components to tail components.
-        displacement: origin of the head frame from that of the tail frame, in tail axes (m).
-        angular, linear: one 3-vector for each velocity coordinate, in head axes.
-        angular_bias, linear_bias: what remains of the derivatives with v̇ = 0, in head axes.
-    """
-
-    rotation: Rotation
-    displacement: Vector
-    angular: tuple[Vector, ...]
-    linear: tuple[Vector, ...]
-    angular_bias: Vector = ZERO
-    linear_bias: Vector = ZERO
-
-
-class Moments(NamedTuple):
-    """The mass distribution of a body about an origin, in its axes: m, ∫ r dm and ∫ r r^T dm.
-
-    The second moments S are carried from frame to frame with fewer operations than the inertia tensor
-    J = tr(S) 1 - S, and what an acceleration field does to a body is linear in them.
-
-    Attributes:
-        mass, first, second: m, ∫ r dm and ∫ r r^T dm.
-        about: the diagonal of J as far as it is known without the sums of S, of which small ones would not be
-            left to the last digit, and zeros not be zero.
-    """
-
-    mass: Scalar
-    first: Vector
-    second: Inertia
-    about: Diagonal = (None, None, None)
-
-    @property
-    def inertia(self) -> Inertia:
-        """J about the origin."""
-        xx, xy, xz, yy, yz, zz = self.second
-        sums = (yy + zz, xx + zz, xx + yy)
-        x, y, z = (s if known is None else known for s, known in zip(sums, self.about, strict=True))
-        return (x, -xy, -xz, y, -yz, z)
-
-
-NO_MOMENTS = Moments(0, ZERO, (0, 0, 0, 0, 0, 0), (0, 0, 0))
-
-
-def second_moments(inertia: Inertia) -> Inertia:
-    """``S = tr(J) / 2 - J``, of numbers to the last digit, however slender the body.
-
-    Of a planar body, whose J has no more than zz, S is what gives that zz.
-    """
-    xx, xy, xz, yy, yz, zz = inertia
-    x, y, z = _less(yy, zz, xx), _less(zz, xx, yy), _less(xx, yy, zz)
-    return (x / 2, -xy, -xz, y / 2, -yz, z / 2)
-
-
-def _less(a: Scalar, b: Scalar, c: Scalar) -> Scalar:
-    """``a + b - c``, from which two that are the same are left out: they would take digits of the third."""
-    if all(isinstance(x, (int, float)) for x in (a, b, c)):
-        return math.fsum((a, b, -c))
-    if c in (a, b):
-        return b if c == a else a
-    return a + b - c
 
 
 class Along(NamedTuple):
@@ -316,15 +247,3 @@ _CHOOSE = "choose a tree that has it as a branch"
 def angle_about_z(algebra: Algebra, rotation: Matrix) -> Scalar:
     """The angle of a turn about z."""
     return algebra.function("atan2", rotation[1][0], rotation[0][0])
-
-
-def point_apart(head: Moments) -> tuple[Moments, Moments]:
-    """The mass as a point at the origin, handed over: for joints whose frames have their origin in common."""
-    return head._replace(mass=0), NO_MOMENTS._replace(mass=head.mass)
-
-
-def round_apart(head: Moments) -> tuple[Moments, Moments]:
-    """The spread along z, handed over: for joints whose frames have the direction of z in common."""
-    *others, zz = head.second
-    kept = Moments(head.mass, head.first, (*others, 0), (None, None, head.about[2]))
-    return kept, Moments(0, ZERO, (0, 0, 0, 0, 0, zz))

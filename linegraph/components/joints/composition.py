@@ -8,9 +8,9 @@ from math import hypot
 from typing import TYPE_CHECKING, Any
 
 from linegraph.components.body import unit
-from linegraph.components.joints.base import Joint, Motion
 from linegraph.components.joints.revolute import Revolute
 from linegraph.components.validation import vector
+from linegraph.spatial.motion import Motion
 from linegraph.spatial.rotation import (
     IDENTITY_MATRIX,
     Factor,
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
+    from linegraph.components.joints.base import Joint
 
 DUST = 4e-15
 """Rounding of a product of constant rotations."""

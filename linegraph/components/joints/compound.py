@@ -7,7 +7,7 @@ from functools import cached_property
 from itertools import accumulate
 from typing import TYPE_CHECKING, Any, Self
 
-from linegraph.components.joints.base import Joint, Motion, Restriction
+from linegraph.components.joints.base import Joint, Restriction
 from linegraph.components.joints.composition import (
     chain,
     common_axes,
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.ir.program import Quantity
+    from linegraph.spatial.motion import Motion
     from linegraph.spatial.rotation import Rotation
     from linegraph.spatial.vector import Matrix
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linegraph.components.joints.base import NO_SHIFT, NO_TURN, Joint, Motion, Restriction
+from linegraph.components.joints.base import NO_SHIFT, NO_TURN, Joint, Restriction
+from linegraph.spatial.motion import Motion
 from linegraph.spatial.rotation import Rotation
 from linegraph.spatial.vector import ZERO, Matrix, Vector
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linegraph.components.joints.base import Joint, Motion, Restriction
+from linegraph.components.joints.base import Joint, Restriction
 from linegraph.components.joints.composition import compose, onto
 from linegraph.components.joints.prismatic import Prismatic
 from linegraph.components.joints.spherical import Spherical
 from linegraph.ir.program import Quantity
+from linegraph.spatial.motion import Motion
 from linegraph.spatial.rotation import IDENTITY_MATRIX, Rotation
 from linegraph.spatial.vector import ZERO, skew
 

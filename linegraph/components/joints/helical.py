@@ -10,16 +10,15 @@ from linegraph.components.joints.base import (
     NO_SHIFT_ACROSS_Z,
     NO_TURN_ACROSS_Z,
     Joint,
-    Moments,
-    Motion,
     Restriction,
     Thread,
     angle_about_z,
-    round_apart,
 )
 from linegraph.components.validation import finite
 from linegraph.errors import ModelError
 from linegraph.ir.program import Quantity
+from linegraph.spatial.inertia import Moments, round_apart
+from linegraph.spatial.motion import Motion
 from linegraph.spatial.rotation import Rotation, Turn, z_onto
 from linegraph.spatial.vector import ZERO
 

@@ -5,15 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linegraph.components.joints.base import (
-    NO_SHIFT_ACROSS_Z,
-    NO_TURN,
-    Joint,
-    Moments,
-    Motion,
-    Restriction,
-)
+from linegraph.components.joints.base import NO_SHIFT_ACROSS_Z, NO_TURN, Joint, Restriction
 from linegraph.ir.program import Quantity
+from linegraph.spatial.inertia import Moments
+from linegraph.spatial.motion import Motion
 from linegraph.spatial.rotation import Rotation, z_onto
 from linegraph.spatial.vector import ZERO, Matrix, Vector
 

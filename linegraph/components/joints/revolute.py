@@ -9,12 +9,12 @@ from linegraph.components.joints.base import (
     NO_SHIFT,
     NO_TURN_ACROSS_Z,
     Joint,
-    Moments,
-    Motion,
     Restriction,
     angle_about_z,
 )
 from linegraph.ir.program import Quantity
+from linegraph.spatial.inertia import Moments
+from linegraph.spatial.motion import Motion
 from linegraph.spatial.rotation import Rotation, Turn, z_onto
 from linegraph.spatial.vector import ZERO, Matrix, Vector
 

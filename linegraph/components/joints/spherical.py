@@ -5,17 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linegraph.components.joints.base import (
-    NO_SHIFT,
-    Joint,
-    Moments,
-    Motion,
-    Restriction,
-    point_apart,
-)
+from linegraph.components.joints.base import NO_SHIFT, Joint, Restriction
 from linegraph.components.joints.composition import angles_of, hinges, reciprocal, turns
 from linegraph.errors import ModelError
 from linegraph.ir.program import Quantity
+from linegraph.spatial.inertia import Moments, point_apart
+from linegraph.spatial.motion import Motion
 from linegraph.spatial.rotation import IDENTITY_MATRIX, Full, Rotation, from_quaternion
 from linegraph.spatial.vector import ZERO, Matrix, Vector, skew
 

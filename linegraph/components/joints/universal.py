@@ -6,15 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
 
-from linegraph.components.joints.base import (
-    NO_SHIFT,
-    Joint,
-    Moments,
-    Motion,
-    Restriction,
-    Square,
-    point_apart,
-)
+from linegraph.components.joints.base import NO_SHIFT, Joint, Restriction, Square
 from linegraph.components.joints.composition import (
     common_axes,
     direction,
@@ -26,6 +18,7 @@ from linegraph.components.joints.composition import (
 )
 from linegraph.errors import ModelError
 from linegraph.ir.program import Quantity
+from linegraph.spatial.inertia import Moments, point_apart
 from linegraph.spatial.vector import ZERO, cross, dot, scale, subtract, times, transpose
 
 if TYPE_CHECKING:
@@ -33,6 +26,7 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
+    from linegraph.spatial.motion import Motion
     from linegraph.spatial.rotation import Rotation
     from linegraph.spatial.vector import Matrix, Vector
 

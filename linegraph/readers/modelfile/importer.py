@@ -9,10 +9,10 @@ from pathlib import PurePath
 from linegraph.algebra.protocol import Floats
 from linegraph.components.body import about_one_axis, impossible
 from linegraph.components.parameters import resolver, sample_values
+from linegraph.components.scalar.branches import dangling, edges_of, projections
 from linegraph.errors import ModelError
 from linegraph.kinematics.links import central_inertia
 from linegraph.model.builder import SNAP, Model
-from linegraph.networks.edges import dangling, edges_of, projections
 from linegraph.readers.modelfile.building import build
 from linegraph.readers.modelfile.document import parse_document, read_bytes
 from linegraph.readers.modelfile.names import name_problem

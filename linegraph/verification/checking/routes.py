@@ -15,6 +15,7 @@ from linegraph.dynamics.whole_system import network_entries
 from linegraph.ir.interpreter import run
 from linegraph.ir.program import Program
 from linegraph.ir.prologue import PREPARE
+from linegraph.kinematics.arms import Arm, arms, coordinate_rates
 from linegraph.paper.joint_form import paper_matrices
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ class _State:
 
     def reference(self) -> tuple[list[Vector], Vector]:
         """M and h by the derivation over floats."""
-        crossed = orthogonality.arms(self.tree, self.algebra, self.q, self.v)
+        crossed = arms(self.tree, self.algebra, self.q, self.v)
         M = self.numeric.united_mass_matrix(self.q, self.v)
         passive = self._applied(crossed, driven=False)
         return M, orthogonality.inverse_dynamics(self.tree, self.algebra, crossed, applied=passive)
@@ -116,7 +117,7 @@ class _State:
 
     def forces(self) -> Vector:
         """Q: joint efforts and what inputs drive."""
-        crossed = orthogonality.arms(self.tree, self.algebra, self.q, self.v)
+        crossed = arms(self.tree, self.algebra, self.q, self.v)
         acting = self._applied(crossed, driven=True)
         active = orthogonality.generalised_forces(self.tree, self.algebra, crossed, acting)
         chords = self.numeric.chords(self.q, self.v)
@@ -126,7 +127,7 @@ class _State:
         """What the powers of all edges sum up to in each subspace."""
         import numpy
 
-        crossed = orthogonality.arms(self.tree, self.algebra, self.q, self.v)
+        crossed = arms(self.tree, self.algebra, self.q, self.v)
         scheme = InverseScheme(
             self.derivation,
             self.tree,
@@ -144,7 +145,7 @@ class _State:
 
     def printed(self) -> tuple[list[Vector], Vector]:
         """M and h by the paper's matrices; what elements add is projected by the float reference."""
-        crossed = orthogonality.arms(self.tree, self.algebra, self.q, self.v)
+        crossed = arms(self.tree, self.algebra, self.q, self.v)
         matrices = paper_matrices(self.tree, self.algebra, self.q, self.v)
         loads = orthogonality.generalised_forces(
             self.tree, self.algebra, crossed, self._applied(crossed, driven=False)
@@ -159,7 +160,7 @@ class _State:
         """The rate of kinetic and gravitational energy, the power of all that is applied, and their size."""
         import numpy as np
 
-        crossed = orthogonality.arms(self.tree, self.algebra, self.q, self.v)
+        crossed = arms(self.tree, self.algebra, self.q, self.v)
         passive = orthogonality.generalised_forces(
             self.tree, self.algebra, crossed, self._applied(crossed, driven=False)
         )
@@ -178,14 +179,14 @@ class _State:
 
     def _energy_rate(self, acceleration: Sequence[float]) -> float:
         """The rate of kinetic and gravitational energy, by calculating with jets."""
-        rates = orthogonality.coordinate_rates(self.tree, self.algebra, self.q, self.v)
+        rates = coordinate_rates(self.tree, self.algebra, self.q, self.v)
         q = [Jet(x, dx, 0) for x, dx in zip(self.q, rates, strict=True)]
         v = [Jet(x, dx, 0) for x, dx in zip(self.v, acceleration, strict=True)]
         jets = Jets(self.algebra)
-        energies = orthogonality.energy(self.tree, jets, orthogonality.arms(self.tree, jets, q, v))
+        energies = orthogonality.energy(self.tree, jets, arms(self.tree, jets, q, v))
         return float(sum(energy.dx for energy in energies if isinstance(energy, Jet)))
 
-    def _applied(self, crossed: list[orthogonality.Arm], *, driven: bool) -> Any:
+    def _applied(self, crossed: list[Arm], *, driven: bool) -> Any:
         state = (tuple(self.q), tuple(self.v))
         model = self.derivation.model
         return applied(
