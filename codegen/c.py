@@ -42,7 +42,7 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
         naming.validate_prefix(options.prefix)
         module = replace(module, name=options.prefix)
         naming.validate(module)
-    statuses = layout.statuses(module)
+    statuses = failures.statuses(module)
     macro = module.name.upper()
     batches = batch.functions(module, statuses) if options.batch else []
     common = {

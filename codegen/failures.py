@@ -80,6 +80,14 @@ def of(module: Module, program: Program | Routine) -> list[Status]:
     return sorted(found)
 
 
+def statuses(module: Module) -> dict[str, dict[int, str]]:
+    """For each function: what each status other than 0 means; empty where it cannot fail."""
+    return {
+        program.name: {status.number: status.about for status in of(module, program)}
+        for program in module.programs
+    }
+
+
 def _name(status: Status) -> str:
     """The end of a constant: letters, digits and single underscores."""
     if not status.name:

@@ -10,7 +10,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from codegen import layout, prose, templates
+from codegen import failures, prose, templates
 from codegen.declare import block, comment
 from codegen.options import DEFAULT
 from codegen.printer import number
@@ -36,7 +36,7 @@ _WIDTH = 96
 def in_c(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
     """The program in C that checks what `c.render` writes of a module: file name -> text."""
     file, module = module.name, replace(module, name=options.prefix or module.name)
-    statuses = layout.statuses(module)
+    statuses = failures.statuses(module)
     given = {key: len(rows[0]) for key, rows in vectors.given.items()}
     text = templates.fill(
         "c/golden.c.jinja",

@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 def helpers(module: Module) -> list[str]:
     """The helpers that these functions share, if there are such functions."""
-    return ["finite"] if any(layout.statuses(module).values()) else []
+    return ["finite"] if any(failures.statuses(module).values()) else []
 
 
 def reads_parameters(module: Module) -> bool:
     """Whether a function that reports a status takes parameters."""
     return any(
         argument.name == "p" and found
-        for program, found in zip(module.programs, layout.statuses(module).values(), strict=True)
+        for program, found in zip(module.programs, failures.statuses(module).values(), strict=True)
         for argument in program.arguments
     )
 

@@ -1,10 +1,10 @@
-"""What the files of all languages say alike: sizes by name, the head, functions that may fail."""
+"""What the files of all languages say alike: sizes by name, and the head."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from codegen import failures, prose
+from codegen import prose
 from linegraph.ir.program import Listing
 
 if TYPE_CHECKING:
@@ -86,11 +86,3 @@ def default(parameter: Quantity) -> float:
     if parameter.value is None:
         raise ValueError(f"parameter {parameter.name!r} has no value")
     return parameter.value
-
-
-def statuses(module: Module) -> dict[str, dict[int, str]]:
-    """For each function: what each status other than 0 means; empty where it cannot fail."""
-    return {
-        program.name: {status.number: status.about for status in failures.of(module, program)}
-        for program in module.programs
-    }

@@ -126,7 +126,7 @@ def _example(module: Module, file: str, real: str) -> str:
     """A sketch that calls one function."""
     program = _shown(module)
     name = f"{module.name}_{program.name}"
-    fails = bool(layout.statuses(module)[program.name])
+    fails = bool(failures.statuses(module)[program.name])
     macro = f"{module.name.upper()}_"
     declarations, given = [], []
     for argument in program.arguments:

@@ -29,7 +29,7 @@ _DIALECT = routines.Dialect("python", "_", passed=False, checked="_as_in_c")
 
 def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
     """The one file of a module; no option concerns it."""
-    statuses = layout.statuses(module)
+    statuses = failures.statuses(module)
     notation = _notation(module)
     bodies = {program.name: _body(module, program, notation) for program in module.programs}
     alone = any(_sizes(program) for program in module.programs)

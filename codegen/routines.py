@@ -106,7 +106,7 @@ def body(
         status=_constants(module, routine),
         small=small or {},
         call=_calling(module, routine, dialect),
-        fails={name for name, found in layout.statuses(module).items() if found},
+        fails={name for name, found in failures.statuses(module).items() if found},
         **dict(routine.details),
     )
     lines = text.rstrip("\n").split("\n")
@@ -147,7 +147,7 @@ def handed(module: Module, program: Program | Routine, dialect: Dialect) -> list
         prefix=dialect.prefix,
         function=program.handed,
         others=[a.name for a in program.arguments if a.name != "p"] + results,
-        status=bool(layout.statuses(module)[program.name]),
+        status=bool(failures.statuses(module)[program.name]),
         not_finite_input=f"{module.name.upper()}_{NOT_FINITE_INPUT.name}",
     )
     return text.rstrip("\n").split("\n")
@@ -163,7 +163,7 @@ def _calling(module: Module, routine: Routine, dialect: Dialect) -> Callable[...
     """
     programs = {program.name: program for program in module.programs}
     prefix = dialect.prefix
-    statuses = layout.statuses(module)
+    statuses = failures.statuses(module)
 
     def call(name: str, *results: str, **renamed: str) -> str:
         if name not in routine.uses:

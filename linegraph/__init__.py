@@ -13,23 +13,23 @@ from linegraph.version import __version__
 
 if TYPE_CHECKING:
     from linegraph.components.parameters import Parameter
+    from linegraph.derivation import Derivation, derive
     from linegraph.emission.emit import emit
     from linegraph.errors import LinegraphError, ModelError, NameRefused, SourceError
     from linegraph.model.builder import Model
     from linegraph.notation import init_printing
-    from linegraph.pipeline import Derivation, derive
     from linegraph.readers.read import read
     from linegraph.symbolic.simplify import simplify
 
 _MODULES = {
-    "Derivation": "pipeline",
+    "Derivation": "derivation",
     "LinegraphError": "errors",
     "Model": "model.builder",
     "ModelError": "errors",
     "NameRefused": "errors",
     "Parameter": "components.parameters",
     "SourceError": "errors",
-    "derive": "pipeline",
+    "derive": "derivation",
     "emit": "emission.emit",
     "init_printing": "notation",
     "read": "readers.read",

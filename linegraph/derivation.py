@@ -1,18 +1,24 @@
-"""What one asks a derivation in a notebook: the equations as sympy objects, their functions, their looks."""
+"""Derivations as users see them: the equations as sympy objects, their functions, their looks."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
+
+from linegraph.display import Displayed
+from linegraph.numeric.derived import Derived
+from linegraph.pipeline import derived
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from linegraph.drawing.scene import Scene
+    from linegraph.evaluation import Function
     from linegraph.identification.base_parameters import BaseParameters
-    from linegraph.notebook.functions import Function
-    from linegraph.pipeline import Derivation
+    from linegraph.model.builder import Model
+    from linegraph.model.system import System
     from linegraph.symbolic.closed_forms import Symbolic
     from linegraph.symbolic.equation_list import Equations
     from linegraph.symbolic.state_space import StateSpace
@@ -20,7 +26,8 @@ if TYPE_CHECKING:
 Expr = Any
 
 
-class Face:
+@dataclass(frozen=True, repr=False)
+class Derivation(Derived, Displayed):
     """The closed forms of a derivation, each derived when it is first asked for.
 
     With coordinates q, velocities v and inputs u, symbols all of them,
@@ -73,11 +80,7 @@ class Face:
         from linegraph.symbolic.closed_forms import Symbolic
         from linegraph.symbolic.simplification import BUDGET
 
-        return Symbolic(self._derivation, level, BUDGET if budget is None else budget, progress)
-
-    @property
-    def _derivation(self) -> Derivation:
-        raise NotImplementedError
+        return Symbolic(self, level, BUDGET if budget is None else budget, progress)
 
     # -- symbols
 
@@ -108,7 +111,7 @@ class Face:
         """The parameters, symbols by their names: ``d.p.m``."""
         from sympy import Symbol
 
-        names = self._derivation.model.parameters
+        names = self.system.parameters
         return SimpleNamespace(**{name: Symbol(name) for name in names})
 
     @property
@@ -189,6 +192,17 @@ class Face:
         """
         return self.symbolic.equations()
 
+    @cached_property
+    def state_space(self) -> StateSpace:
+        """A, B, C, D of a system that is linear, in letters.
+
+        Raises:
+            ModelError: it is not linear.
+        """
+        from linegraph.symbolic.linear_systems import state_space_of
+
+        return state_space_of(self.symbolic)
+
     def linearise(self, at: Mapping[Any, Any] | None = None) -> StateSpace:
         """A, B, C, D for small deviations from an equilibrium or a steady motion, in letters.
 
@@ -206,7 +220,9 @@ class Face:
             ModelError: v̇ is not 0 there, constraints do not hold or the position is singular, the time stands
                 in the equations, or they have too many terms.
         """
-        return self.symbolic.linearise(at)
+        from linegraph.symbolic.linear_systems import linearise
+
+        return linearise(self.symbolic, at or {})
 
     linearize = linearise
 
@@ -238,7 +254,11 @@ class Face:
         """
         from linegraph.identification.search import base_parameters
 
-        return base_parameters(self._derivation)
+        def of_model(parameters: Mapping[str, float]) -> Any:
+            function = self.function("inertial_parameters")
+            return function(parameters=parameters) if parameters else function()
+
+        return base_parameters(self, of_model)
 
     # -- numbers
 
@@ -258,9 +278,9 @@ class Face:
         Raises:
             ModelError: there is no such function, or a symbol is not of this derivation.
         """
-        from linegraph.notebook.functions import function
+        from linegraph.evaluation import function
 
-        return function(self._derivation, what, frames)
+        return function(self, what, frames)
 
     # -- looks
 
@@ -275,9 +295,23 @@ class Face:
         """
         from linegraph.drawing.mechanism import mechanism_scene
 
-        return mechanism_scene(self._derivation, hold=hold)
+        return mechanism_scene(self, hold=hold)
 
-    def _repr_html_(self) -> str:
-        from linegraph.notebook.displays import of_derivation
 
-        return of_derivation(self._derivation)
+def derive(model: Model | System) -> Derivation:
+    """Unite the terminal graphs, choose the tree, check that equations of motion exist.
+
+    The derivation is a snapshot: it keeps a copy of the model, which later changes do not reach.
+
+    Raises:
+        ModelError: the model cannot be derived; the message names the component.
+
+    Example:
+        >>> from linegraph import Model
+        >>> model = Model("pendulum")
+        >>> bob = model.body("bob", mass=2.0, mass_center=(0, 0, -0.5))
+        >>> _ = model.revolute("hinge", between=("ground", bob), axis=(0, 1, 0))
+        >>> derive(model).numeric().mass_matrix([0.3])
+        [[0.5]]
+    """
+    return derived(model, Derivation)

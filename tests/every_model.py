@@ -34,9 +34,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from linegraph import Model
+    from linegraph.derivation import Derivation
     from linegraph.ir.program import Module, Program, Quantity
     from linegraph.model.bounds import Interval
-    from linegraph.pipeline import Derivation
 
     Maker = Callable[[], Model]
 
@@ -109,7 +109,7 @@ def reported(derivation: Derivation, format: str) -> None:
     level = "fast" if len(derivation.structure.velocities) < 6 else "none"
     text = report.report(derivation, format, level=level)
     assert text.strip()
-    infinite = "nan|inf" if derivation.model.name == "zoo" else "nan|inf|zoo"
+    infinite = "nan|inf" if derivation.system.name == "zoo" else "nan|inf|zoo"
     found = re.search(rf"(?<![\w.])({infinite})(?![\w.])", text)
     assert not found, f"{found} is no number"
 
@@ -133,7 +133,7 @@ def shown(derivation: Derivation) -> None:
 
 def planted(derivation: Derivation) -> None:
     """`trees`."""
-    assert table(candidates(derivation.model))
+    assert table(candidates(derivation.system))
 
 
 def checked(derivation: Derivation) -> None:
@@ -144,7 +144,7 @@ def checked(derivation: Derivation) -> None:
 
 def functions_of(derivation: Derivation) -> Module:
     """The program with every function that the model has."""
-    frames = named_frames(derivation.model, list(derivation.model.bodies)[-1:])
+    frames = named_frames(derivation.system, list(derivation.system.bodies)[-1:])
     able = []
     for key in PROGRAMS:
         own = frames if key in (*OF_FRAMES, "kinematics") else ()
@@ -210,7 +210,7 @@ def _calls(
 ) -> Iterator[tuple[Program | Routine, list[Any]]]:
     """Every function with arguments at a drawn state, which satisfies the constraints."""
     draw = random.Random(seed)
-    bounds = derivation.model.bounds
+    bounds = derivation.system.bounds
     time = draw.uniform(*(bounds.t or (0, 1)))
     reach = 0.5 if derivation.structure.network is None else 0.1
 
@@ -221,7 +221,7 @@ def _calls(
     numeric = derivation.numeric(t=time, u=inputs)
     tree = numeric.tree
     if tree.closed:
-        q, v = consistent(derivation, numeric, draw)
+        q, v = consistent(derivation, derivation.assembled.q, numeric, draw)
     else:
         q = some(tree.positions, bounds.coordinates, 0.7)
         tree.normalise(q)

@@ -26,7 +26,7 @@ from linegraph.numeric.reference import Numeric
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from linegraph.pipeline import Derivation
+    from linegraph.derivation import Derivation
 
 Array = Any
 STEP = 1e-30
@@ -177,7 +177,7 @@ class Reference:
 
     @property
     def model(self) -> Model:
-        return self.derivation.model
+        return self.derivation.system
 
     @cached_property
     def algebra(self) -> Lanes:

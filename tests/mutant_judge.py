@@ -37,10 +37,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from linegraph import Model
+    from linegraph.derivation import Derivation
     from linegraph.ir.golden_vectors import Vectors
     from linegraph.ir.program import Module
     from linegraph.kinematics.frame_trees import NamedFrame
-    from linegraph.pipeline import Derivation
     from linegraph.verification.golden.point import Point
 
     Array = Any

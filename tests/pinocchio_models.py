@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from lxml import etree
 
-from linegraph.pipeline import derive
+from linegraph.derivation import derive
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -18,7 +18,7 @@ from random_systems import Drive, random_drive
 from spec_models import numbers, rows
 
 from linegraph import Model
-from linegraph.model.builder_words import BodyHandle
+from linegraph.model.body_handle import BodyHandle
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -26,7 +26,7 @@ import random_trees as trees
 from spec_models import numbers, rows
 
 from linegraph import Model
-from linegraph.model.builder_words import BodyHandle
+from linegraph.model.body_handle import BodyHandle
 
 Array = np.ndarray
 Values = Mapping[str, Any]

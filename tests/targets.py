@@ -310,7 +310,7 @@ def _called(of: Module, program: Program | Routine, draws: bool) -> list[str]:
         lines.append(f"            number out{k}[{size}] = {{0}};")
         outputs.append((f"out{k}", size))
     call = f"{of.name}_{program.name}({', '.join([*given, *(name for name, _ in outputs)])})"
-    fails = bool(codegen.layout.statuses(of)[program.name])
+    fails = bool(codegen.failures.statuses(of)[program.name])
     lines.append(f"            const int status = {call};" if fails else f"            {call};")
     status = "status" if fails else "0"
     for name, size in outputs:

@@ -16,7 +16,7 @@ from compiled import Compiled
 from emitted import load
 
 import codegen
-from codegen import failures, layout
+from codegen import failures
 from linegraph.ir.program import Routine
 from linegraph.ir.statuses import COMMON, FIRST, LAST, NOT_FINITE_INPUT
 
@@ -67,7 +67,7 @@ class Both:
         self.given = state(self.module, self.python, own)
 
     def functions(self) -> Iterator[Function]:
-        statuses = layout.statuses(self.module)
+        statuses = failures.statuses(self.module)
         for program in self.module.programs:
             if statuses[program.name]:
                 yield Function(program, {x.name: self.given[x.name] for x in program.arguments})

@@ -267,7 +267,8 @@ def test_symbolic_offsets_of_a_robot() -> None:
     base = require_minimal(urdf.read(robot("ur5_robot"), symbolic=True))
     assert base.count == 52
     assert any(
-        x.free_symbols & {sympy.Symbol(p) for p in base.derivation.model.parameters} for x in base.K
+        x.free_symbols & {sympy.Symbol(p) for p in base.derivation.system.parameters}
+        for x in base.K
     )
 
 

@@ -24,7 +24,7 @@ from sympy.physics import mechanics
 import linegraph as lg
 
 if TYPE_CHECKING:
-    from linegraph.pipeline import Derivation
+    from linegraph.derivation import Derivation
 
 BOOKS = {book.name: book for book in books()}
 EVERY = pytest.mark.parametrize("name", BOOKS)

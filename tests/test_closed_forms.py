@@ -209,7 +209,7 @@ def forms_agree(derivation: Derivation, found: Symbolic, seed: int, *, reactions
         if not reactions:
             continue
         scheme = state.scheme()
-        for joint in (j.name for j in derivation.model.joints):
+        for joint in (j.name for j in derivation.system.joints):
             wrench = [state.form(part)[:, 0] for part in found.reaction(joint)]
             assert error(wrench, [list(part) for part in scheme.reaction(joint)]) < EXACT, joint
 
@@ -765,7 +765,7 @@ def plain(expression: Expr, d: Derivation) -> Expr:
 def test_numbers_for_parameters_cost_nothing(seed: int) -> None:
     """A system said in numbers has forms as short, within a fifth, as the symbols' with numbers put in."""
     named, plain_numbers = readable(seed, symbolic=True), readable(seed, symbolic=False)
-    point = {sympy.Symbol(p.name): sympy.Float(p.value) for p in named.model.parameters.values()}
+    point = {sympy.Symbol(p.name): sympy.Float(p.value) for p in named.system.parameters.values()}
     for name in ("mass_matrix", "bias", "gravity", "potential_energy"):
         by_symbols, by_numbers = getattr(named, name), getattr(plain_numbers, name)
         expected = by_symbols.subs(point)

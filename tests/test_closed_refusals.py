@@ -19,7 +19,7 @@ from linegraph.readers.modelfile import parse
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from linegraph.pipeline import Derivation
+    from linegraph.derivation import Derivation
 
 SLIDERS = """\
 [body.cart]

@@ -28,7 +28,7 @@ from linegraph.readers.modelfile.schema import schema
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from linegraph.pipeline import Derivation
+    from linegraph.derivation import Derivation
 
 EXACT = 1e-11  # measured below 1e-12: rates are differences
 SEEDS = range(3)

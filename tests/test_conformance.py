@@ -16,7 +16,7 @@ from every_model import COORDINATES, QUESTIONS, derived, documented, every_model
 from linegraph import LinegraphError
 
 if TYPE_CHECKING:
-    from linegraph.pipeline import Derivation
+    from linegraph.derivation import Derivation
 
 SMALL = (
     "double_pendulum",

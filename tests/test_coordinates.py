@@ -29,7 +29,7 @@ from linegraph.readers import modelfile
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from linegraph.pipeline import Derivation
+    from linegraph.derivation import Derivation
 
 ROOT = Path(__file__).parent.parent
 TIME = 0.3
@@ -86,9 +86,9 @@ def solved(derivation: Derivation, q: Any, v: Any, u: Any) -> dict[str, Any]:
         derivation, tree, algebra, parameters, crossed, chords, (tuple(q), tuple(v)), a, pairs
     )
     outputs, _ = observed(
-        derivation.model, tree, algebra, parameters, chords, (tuple(q), tuple(v)), scheme
+        derivation.system, tree, algebra, parameters, chords, (tuple(q), tuple(v)), scheme
     )
-    centers = {body: scheme.center(body) for body in derivation.model.bodies}
+    centers = {body: scheme.center(body) for body in derivation.system.bodies}
     return {
         **{body: np.array([*frame.pull, *frame.spin]) for body, frame in centers.items()},
         "outputs": np.array(outputs, dtype=float),

@@ -439,7 +439,7 @@ def symbolic_case() -> tuple[Derivation, dict[Any, Any], list[float], list[float
     q = [sympy.Rational(k, 7) for k in (3, -5, 8)]
     v = [sympy.Rational(k, 9) for k in (-4, 13, 6)]
     numbers = dict(zip([*symbolic.q, *symbolic.v], [*q, *v], strict=True))
-    for parameter in derivation.model.parameters.values():
+    for parameter in derivation.system.parameters.values():
         assert parameter.value is not None
         numbers[sympy.Symbol(parameter.name)] = sympy.Rational(parameter.value)
     return derivation, numbers, [float(x) for x in q], [float(x) for x in v]

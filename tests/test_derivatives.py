@@ -31,7 +31,7 @@ from linegraph.programs.register import PROGRAMS
 from linegraph.programs.workspace import Functions
 
 if TYPE_CHECKING:
-    from linegraph.pipeline import Derivation
+    from linegraph.derivation import Derivation
 
 Array = Any
 

@@ -101,9 +101,9 @@ def test_hostile_names_are_clear() -> None:
 
 @pytest.mark.parametrize("coordinates", ["absolute", "absolute-angle"])
 def test_other_trees_are_clear(coordinates: str) -> None:
-    from linegraph.pipeline import variant
+    from linegraph.model.system import variant
 
-    scene = graph_scene(derive(variant(example("double_pendulum").model, coordinates=coordinates)))
+    scene = graph_scene(derive(variant(example("double_pendulum").system, coordinates=coordinates)))
     assert overlaps(scene) == []
     assert crossed(scene) == set()
 
@@ -118,7 +118,7 @@ def every_name_is_there(name: str) -> None:
     for topology in topologies(derivation):
         assert {edge.name for edge in topology.projection.edges} <= named
         assert {*topology.projection.vertices} <= {n for kind, n in parts if kind == "vertex"}
-    assert {*derivation.model.bodies} <= {n for kind, n in parts if kind == "body"}
+    assert {*derivation.system.bodies} <= {n for kind, n in parts if kind == "body"}
 
 
 def branches_are_bold(name: str) -> None:
@@ -290,7 +290,7 @@ def test_bytes_do_not_depend_on_the_process() -> None:
 
 @pytest.mark.parametrize("name", ["four_bar", "anymal", "excavator_arm"])
 def test_bytes_are_the_same_again(name: str) -> None:
-    again = derive(example(name).model)
+    again = derive(example(name).system)
     assert svg_text(whole_scene(example(name))) == svg_text(whole_scene(again))
 
 

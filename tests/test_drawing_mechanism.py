@@ -37,7 +37,7 @@ def test_names_are_clear_and_everything_has_one(name: str) -> None:
     scene = mechanism_scene(example(name))
     assert overlaps(scene) == []
     assert outside(scene) == []
-    model = example(name).model
+    model = example(name).system
     said = " ".join(part.name for part in scene.parts())
     things = [*model.bodies, *(j.name for j in model.joints), *(e.name for e in model.elements)]
     assert [thing for thing in things if thing not in said] == []
@@ -47,7 +47,7 @@ def test_names_are_clear_and_everything_has_one(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["double_pendulum", "four_bar", "stewart_platform", "furuta"])
 def test_names_of_bodies_and_joints_are_seen(name: str) -> None:
-    model = example(name).model
+    model = example(name).system
     texts = {text.text for text in mechanism_scene(example(name)).texts()}
     assert {*model.bodies, *(joint.name for joint in model.joints)} <= texts
 

@@ -257,7 +257,7 @@ def test_states_are_legal(name: str) -> None:
     """Quaternions have length 1, loops are closed, velocities are allowed; the first is at rest."""
     vectors = found(name)
     derivation = lg.derive(read(name))
-    assert ("p" in vectors.given) == bool(derivation.model.parameters)
+    assert ("p" in vectors.given) == bool(derivation.system.parameters)
     rows = vectors.given.get("p", ((),) * vectors.states)
     for q, v, p in zip(vectors.given["q"], vectors.given["v"], rows, strict=True):
         numeric = derivation.numeric(dict(zip(vectors.parameters, p, strict=True)))

@@ -25,7 +25,7 @@ from linegraph.algebra.protocol import Floats
 from linegraph.components.joints import JOINTS, Compound, Helical, Spherical, Universal
 from linegraph.components.joints.spherical import SEQUENCES
 from linegraph.emission.emit import module_for, render
-from linegraph.model.builder_words import BodyHandle
+from linegraph.model.body_handle import BodyHandle
 from linegraph.numeric.reference import Numeric
 from linegraph.paper.joint_form import paper_matrices
 from linegraph.spatial.rotation import Turn

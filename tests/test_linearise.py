@@ -30,7 +30,7 @@ from linegraph.programs.workspace import Functions
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from linegraph.pipeline import Derivation
+    from linegraph.derivation import Derivation
     from linegraph.symbolic.state_space import StateSpace
 
 Array = Any
@@ -45,7 +45,7 @@ OF_POINTS = ("row", "pendulum", "pendulum on a cart")
 def drawn(derivation: Derivation, seed: int) -> dict[str, float]:
     """Other values of all parameters."""
     rng = np.random.default_rng(seed)
-    given = [p for p in derivation.model.parameters.values() if not p.derived]
+    given = [p for p in derivation.system.parameters.values() if not p.derived]
     return {p.name: float(p.value or 1.0) * rng.uniform(0.7, 1.4) for p in given}
 
 

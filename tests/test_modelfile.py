@@ -17,9 +17,9 @@ import linegraph as lg
 from linegraph.components.constraints import CONSTRAINTS
 from linegraph.components.forces import ELEMENTS
 from linegraph.components.joints import JOINTS
+from linegraph.derivation import derive
 from linegraph.emission.emit import render
 from linegraph.errors import LinegraphError, SourceErrors
-from linegraph.pipeline import derive
 from linegraph.readers.modelfile import parse, read, schema, starter
 from linegraph.readers.modelfile.document import parse_document
 from linegraph.readers.modelfile.schema import PATH, text

@@ -755,7 +755,7 @@ def test_what_follows_from_an_error_is_not_reported() -> None:
 
 def test_errors_of_the_derivation_have_a_line() -> None:
     """A loop is none of them, a loose body is."""
-    from linegraph.pipeline import derive
+    from linegraph.derivation import derive
 
     text = (
         SMALL + '[revolute.second]\nbetween = ["ground", "arm"]\naxis = [0, 1, 0]\n[body.loose]\n'

@@ -24,7 +24,7 @@ from linegraph.kinematics.arms import arms
 from linegraph.readers import modelfile, urdf
 
 if TYPE_CHECKING:
-    from linegraph.pipeline import Derivation
+    from linegraph.derivation import Derivation
 
 STEMS = ("theta", "x", "b", "lambda", "I")
 PATTERNS = (
@@ -135,7 +135,7 @@ def values_at(derivation: Derivation, q: Any, v: Any, u: Any, rest: np.random.Ge
     names = derivation.symbol_names
     given = {"q": q, "v": v, "u": u}
     found: dict[str, float] = {}
-    for parameter in derivation.model.parameters.values():
+    for parameter in derivation.system.parameters.values():
         if not parameter.derived:
             found[parameter.name] = float(parameter.value)
     count = len(found)
@@ -143,7 +143,7 @@ def values_at(derivation: Derivation, q: Any, v: Any, u: Any, rest: np.random.Ge
         numbers_of = given.get(argument, rest.uniform(-1, 1, len(symbols)).tolist())
         count += len(symbols)
         found |= dict(zip(symbols, numbers_of, strict=True))
-    declared = {*derivation.model.parameters, "t", "pi"}
+    declared = {*derivation.system.parameters, "t", "pi"}
     assert not declared & {x for symbols in names.values() for x in symbols}
     assert len(found) == count, "two things have one symbol"
     return {sympy.Symbol(name): x for name, x in found.items()}
@@ -414,7 +414,7 @@ def test_what_is_no_symbol_may_have_any_name(name: str) -> None:
     model.capacitor(f"{name}_C", ("n", "ground"), capacitance=1)
     model.output("seen", f"position({name}.{name}).x + across({name}) + 2*through({name}_R)")
     derivation = lg.derive(model)
-    assert not derivation.model.depends_on_time
+    assert not derivation.system.depends_on_time
     outputs = derivation.closed_form("none").outputs["seen"]
     assert sympy.Symbol("t") not in outputs.free_symbols
     assert {str(x) for x in outputs.free_symbols} >= {"joint_x", f"v_{name}_C"}

@@ -19,16 +19,16 @@ from scipy.linalg import expm
 from linegraph.components.domains import DOMAINS, SPATIAL, UNITS
 from linegraph.components.scalar import COMPONENTS
 from linegraph.components.scalar.base import PLACES, Transducer
+from linegraph.derivation import derive
 from linegraph.emission.emit import emit, render
 from linegraph.errors import LinegraphError
-from linegraph.pipeline import derive
 from linegraph.readers import modelfile
 from linegraph.report import show
 from linegraph.verification import checking
 
 if TYPE_CHECKING:
     import linegraph as lg
-    from linegraph.pipeline import Derivation
+    from linegraph.derivation import Derivation
 
 ROOT = Path(__file__).parent.parent
 PAGE = (ROOT / "docs" / "networks.md").read_text("utf-8")

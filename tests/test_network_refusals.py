@@ -25,7 +25,7 @@ from linegraph.readers.modelfile import parse
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from linegraph.pipeline import Derivation
+    from linegraph.derivation import Derivation
 
 
 def part(kind: str, name: str, between: str, *keys: str) -> str:
@@ -914,7 +914,7 @@ def test_the_derivative_of_an_input_becomes_an_input() -> None:
     inputs = derivation.structure.inputs
     assert [q.name for q in inputs] == ["u", "u_rate"]
     assert any("u_rate" in remark for remark in network.remarks)
-    files = render(derivation.model)
+    files = render(derivation.system)
     assert '"u_rate",' in files["m.py"]
 
 
@@ -957,7 +957,7 @@ def test_domains_have_vertices_of_their_own() -> None:
 def test_inputs_may_be_what_is_divided_by(text: str, tmp_path: Path) -> None:
     """Nothing of a network is ever evaluated at u = 0 but where u is 0."""
     derivation = whole(f'name = "m"\n{text}')
-    module = load(render(derivation.model), "m", tmp_path)
+    module = load(render(derivation.system), "m", tmp_path)
     u = [2.0] + [0.0] * (module.NU - 1)
     v = [0.7] * module.NV
     assert np.isfinite(module.forward_dynamics([], v, u)).all()
@@ -1004,7 +1004,7 @@ def test_what_loses_power_may_have_any_name(name: str) -> None:
     """A name is no expression: none is read from it, and no function gets the time for it."""
     text = INPUT + resistor(f'"{name}"', "a ground") + capacitor("C1", "a ground") + HEAT
     derivation = whole(text + part("losses", "heat", "ground warm", f'of = ["{name}"]'))
-    assert not derivation.model.depends_on_time
+    assert not derivation.system.depends_on_time
 
 
 @pytest.mark.parametrize("later", ["joint", "element", "constraint", "component"])

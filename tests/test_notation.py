@@ -11,11 +11,11 @@ from lxml import etree
 from plain_formulas import Reader
 
 import linegraph as lg
-from linegraph.notation import Notation
 from linegraph.notation.expressions import number
 from linegraph.notation.latex import Latex, escaped
 from linegraph.notation.mathml import MathMl
 from linegraph.notation.names import shaped
+from linegraph.notation.notation import Notation
 from linegraph.notation.plain import Plain
 from linegraph.notation.tree import Number, Sum
 from linegraph.notation.writing import pieces, visible

@@ -24,8 +24,8 @@ from mixed_tableau import Instant, Tableau
 from linegraph import ModelError, derive
 from linegraph.dynamics.edge_quantities import network_powers, powers
 from linegraph.emission.emit import render
+from linegraph.model.system import variant
 from linegraph.numeric.between_trees import transfer
-from linegraph.pipeline import variant
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -306,7 +306,7 @@ def compared(case: Case, other: Other) -> None:
     q, v, u = case.named()
     kept = base.kept(keys) * turned if keys else np.zeros((STATES, 0))
     v = v | {x.name: kept[:, k] for k, x in enumerate(tree.velocities[first:])}
-    r = reference_of(derivation.model, base.t, q, v, u)
+    r = reference_of(derivation.system, base.t, q, v, u)
     names = [quantity.name for quantity in base.tree.velocities]
     order = [names.index(x.name) for x in tree.velocities[:first]]
     rates = rate(base.moved.kept(keys)) * turned if keys else kept

@@ -22,7 +22,7 @@ from linegraph.identification.regressor import Columns, Station, by_motions, by_
 from linegraph.identification.standard_parameters import MOMENTS, homes
 from linegraph.identification.tied_columns import tied, ties
 from linegraph.kinematics.arms import arms
-from linegraph.pipeline import variant
+from linegraph.model.system import variant
 from linegraph.programs.workspace import Functions
 from linegraph.readers import modelfile, urdf
 

@@ -240,7 +240,7 @@ def test_printed_motion_of_mass_centres_is_that_of_the_derivation(name: str) -> 
     printed = equations_in(section_of(name, "Connecting equations"))
     scheme = scheme_of(d, q, v, [0.0] * len(v))
     seen = 0
-    for body in d.model.bodies:
+    for body in d.system.bodies:
         frame = scheme.center(body)
         for start, part in (
             (f"r_{body}.mass_center", frame.origin),
@@ -343,7 +343,7 @@ def printed_reactions_are_those_of_the_derivation(name: str) -> None:
     reader = Reader(walked(section, values))
     printed = equations_in(section)
     scheme = scheme_of(d, q, v, a)
-    for joint in d.model.joints:
+    for joint in d.system.joints:
         wrench = scheme.reaction(joint.name)
         for letter, part in (("f", wrench.force), ("τ", wrench.torque)):
             size = max(1.0, *(abs(float(x)) for x in part))
@@ -377,7 +377,7 @@ def printed_cutsets_and_circuits_are_those_of_the_topology(name: str) -> None:
     d = derivation(name)
     section = section_of(name, "Cutset and circuit equations")
     topologies = []
-    if d.model.bodies:
+    if d.system.bodies:
         topologies += [d.formulation.translation, d.formulation.rotation]
     if d.formulation.network is not None:
         topologies += list(d.formulation.network.topologies)

@@ -24,7 +24,7 @@ LINEAR = [s for s in PUBLISHED if not s.rates and s.inputs]
 
 
 def space_of(text: str) -> StateSpace:
-    found: StateSpace = lg.derive(modelfile.parse(text.encode(), "m.toml")).symbolic.state_space
+    found: StateSpace = lg.derive(modelfile.parse(text.encode(), "m.toml")).state_space
     return found
 
 
@@ -72,7 +72,7 @@ def test_parameters_may_be_changed() -> None:
     model.voltage_source("s", ("a", "ground"), voltage="u")
     model.resistor("R1", ("a", "b"), resistance="R")
     model.capacitor("C1", ("b", "ground"), capacitance="C")
-    space = lg.derive(model).symbolic.state_space
+    space = lg.derive(model).state_space
     assert space.to_control().poles() == pytest.approx([-1e3])
     assert space.to_control({"R": 500.0}).poles() == pytest.approx([-2e3])
 
@@ -85,7 +85,7 @@ def test_a_cart_on_a_spring_is_linear_too() -> None:
     cart = model.body("cart", mass="m")
     model.prismatic("slide", ("ground", cart), axis=(1, 0, 0))
     model.spring("spring", joint="slide", stiffness="k")
-    space = lg.derive(model).symbolic.state_space
+    space = lg.derive(model).state_space
     k, m = sympy.symbols("k m")
     assert sympy.Matrix([[0, 1], [-k / m, 0]]) == space.A
     assert list(space.B) == [0, 1 / m]
@@ -102,7 +102,7 @@ def test_a_cart_on_a_spring_is_linear_too() -> None:
 def test_what_is_not_linear_says_so(name: str, problem: str) -> None:
     path = ROOT / "examples" / name / f"{name}.toml"
     with pytest.raises(ModelError, match=problem):
-        _ = lg.derive(modelfile.read(path)).symbolic.state_space
+        _ = lg.derive(modelfile.read(path)).state_space
 
 
 def test_a_constant_source_is_no_input() -> None:

@@ -24,7 +24,7 @@ from linegraph.model.choices import ABSOLUTE, ABSOLUTE_ANGLE
 from linegraph.numeric.between_trees import transfer
 
 if TYPE_CHECKING:
-    from linegraph.pipeline import Derivation
+    from linegraph.derivation import Derivation
 
 SEEDS = range(24)
 TOLERANCE = 1e-9

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from urdf_text import ZOO, axis, inertial, joint, link, mimic, origin, robot
 
+from linegraph.derivation import derive
 from linegraph.errors import SourceError
-from linegraph.pipeline import derive
 from linegraph.readers.urdf import parse, read
 from linegraph.spatial.rotation import from_rpy
 

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import pytest
 from urdf_text import ZOO, inertial, joint, link, mimic, robot
 
+from linegraph.derivation import derive
 from linegraph.errors import LinegraphError
 from linegraph.model.builder import Model
-from linegraph.pipeline import derive
 from linegraph.readers.urdf import parse
 
 if TYPE_CHECKING:

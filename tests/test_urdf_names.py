@@ -92,7 +92,7 @@ def checked(model: Model, folder: Path) -> None:
 
 def plain() -> tuple[np.ndarray, np.ndarray]:
     """M and h of the robot by the float reference."""
-    from linegraph.pipeline import derive
+    from linegraph.derivation import derive
 
     names = ["r", "one", "two", "three", "first", "second", "third"]
     numeric = derive(parse(robot(names), "r.urdf")).numeric()

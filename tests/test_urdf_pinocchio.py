@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from urdf_text import ZOO, axis, inertial, joint, link, mimic, origin, robot
 
+from linegraph.derivation import derive
 from linegraph.errors import LinegraphError
-from linegraph.pipeline import derive
 from linegraph.readers.urdf import parse, read
 
 pytest.importorskip("pinocchio")

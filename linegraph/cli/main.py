@@ -161,7 +161,7 @@ def derive(
       linegraph derive crane.toml --output crane.tex --level fast
     """
     with explained():
-        from linegraph.pipeline import derive as derived
+        from linegraph.derivation import derive as derived
         from linegraph.report import format_of, report, save
 
         chosen = format or (format_of(output) if output else "text")
@@ -210,7 +210,7 @@ def parameters(
     --snap 1e-4 makes them so.
     """
     with explained():
-        from linegraph.pipeline import derive
+        from linegraph.derivation import derive
 
         derivation = derive(_read(model, base, locks, parameters, snap))
         click.echo(str(derivation.base_parameters()), nl=False)
@@ -233,7 +233,7 @@ def assemble(
     how many constraints are redundant.
     """
     with explained():
-        from linegraph.pipeline import derive
+        from linegraph.derivation import derive
         from linegraph.report import assembled
 
         values = dict(assignment(text, "--set") for text in held)
@@ -252,7 +252,7 @@ def show(
     cutset and circuit matrices.
     """
     with explained():
-        from linegraph.pipeline import derive
+        from linegraph.derivation import derive
         from linegraph.report import show as text
 
         system = _read(model, base, locks, parameters, snap)
@@ -279,8 +279,8 @@ def graph(
     the position that `assemble` finds.
     """
     with explained():
+        from linegraph.derivation import derive
         from linegraph.drawing.files import picture, require_ending, write
-        from linegraph.pipeline import derive
 
         require_ending(output)
         values = dict(assignment(text, "--set") for text in held)
@@ -336,7 +336,7 @@ def check(
     Exit status 1 if they differ by more than rounding.
     """
     with explained():
-        from linegraph.pipeline import derive
+        from linegraph.derivation import derive
         from linegraph.verification import checking
 
         derivation = derive(_read(model, base, locks, parameters, snap))

@@ -13,12 +13,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from linegraph.graph.forest import Topology
-    from linegraph.pipeline import Derivation
+    from linegraph.numeric.derived import Derived
 
 _STYLES = {kind: "dashed" if dash else "solid" for kind, dash in DASHES.items()}
 
 
-def dot_text(derivation: Derivation, subspace: str | Iterable[str] | None = None) -> str:
+def dot_text(derivation: Derived, subspace: str | Iterable[str] | None = None) -> str:
     """The system graph in the language DOT: a cluster for each subspace and each body, branches bold.
 
     Args:
@@ -28,9 +28,9 @@ def dot_text(derivation: Derivation, subspace: str | Iterable[str] | None = None
     Raises:
         ModelError: there is no such subspace.
     """
-    kinds = kinds_of(derivation.model)
+    kinds = kinds_of(derivation.system)
     lines = [
-        f"digraph {quoted(derivation.model.name)} {{",
+        f"digraph {quoted(derivation.system.name)} {{",
         "  rankdir=BT; compound=true; fontname=sans;",
         "  node [shape=point, width=0.08, fontname=sans, fontsize=10];",
         "  edge [fontname=sans, fontsize=10, arrowsize=0.6];",

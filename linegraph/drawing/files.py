@@ -16,7 +16,7 @@ from linegraph.files import is_stream, write_file
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from linegraph.pipeline import Derivation
+    from linegraph.numeric.derived import Derived
 
 ENDINGS = (".svg", ".png", ".dot")
 
@@ -38,7 +38,7 @@ def _ending(output: str) -> str:
 
 
 def picture(
-    derivation: Derivation,
+    derivation: Derived,
     output: str | None = None,
     *,
     what: str = "graph",

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from linegraph.graph.multigraph import Edge
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
 
 BRANCH_PEN, CHORD_PEN, OPEN_PEN = Pen(BRANCH, 3), Pen(GREY, 1.2), Pen(GREY, 1.2)
 
@@ -26,7 +26,7 @@ DASHES: Mapping[str, tuple[float, ...]] = {
 """Kinds of edges by how their lines are broken."""
 
 
-def kinds_of(model: Model) -> dict[str, str]:
+def kinds_of(model: System) -> dict[str, str]:
     """The kind of each component of 3-D mechanics that is no joint, by its name."""
     kinds = {e.name: PORT if isinstance(e, NetworkForce) else ELEMENT for e in model.elements}
     return kinds | {limit.name: LIMIT for limit in model.constraints}

@@ -44,7 +44,7 @@ from linegraph.drawing.symbols import (
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from linegraph.pipeline import Derivation
+    from linegraph.numeric.derived import Derived
 
 SIGN, SIGN_HIGH = 56, 24
 LONG_SIGNS = ("revolute", "prismatic", "cylindrical", "helical", "compound", "planar")
@@ -58,7 +58,7 @@ LINK_PEN, LINK_FILL = Pen("#6b7f96", 1.2), "#dde6f0"
 
 
 def mechanism_scene(
-    derivation: Derivation,
+    derivation: Derived,
     q: Sequence[float] | None = None,
     hold: Mapping[str, float] | None = None,
 ) -> Scene:
@@ -73,12 +73,12 @@ def mechanism_scene(
         ModelError: a parameter has no value, or there are no bodies.
     """
     sketch = Sketch(poses(derivation, q, hold))
-    title = f"Mechanism of {derivation.model.name}"
+    title = f"Mechanism of {derivation.system.name}"
     items = moved(sketch.items, 16, 16)
     return Scene(sketch.width + 32, sketch.height + 32, title, sketch.about, items)
 
 
-def mechanism_svg(derivation: Derivation, q: Sequence[float] | None = None) -> str:
+def mechanism_svg(derivation: Derived, q: Sequence[float] | None = None) -> str:
     """`mechanism_scene` as SVG."""
     return svg_text(mechanism_scene(derivation, q))
 

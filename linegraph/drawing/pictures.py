@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from linegraph.graph.forest import Topology
     from linegraph.graph.multigraph import Projection
-    from linegraph.pipeline import Derivation
+    from linegraph.numeric.derived import Derived
 
 MARGIN, APART, LEAST_LEGEND = 16, 28, 420
 WIDEST = 1100
@@ -30,7 +30,7 @@ WIDEST = 1100
 LONGEST_REMARK = 120
 
 
-def graph_scene(derivation: Derivation, subspace: str | Iterable[str] | None = None) -> Scene:
+def graph_scene(derivation: Derived, subspace: str | Iterable[str] | None = None) -> Scene:
     """The system graph: a panel for each subspace, branches bold.
 
     Args:
@@ -40,11 +40,11 @@ def graph_scene(derivation: Derivation, subspace: str | Iterable[str] | None = N
     Raises:
         ModelError: there is no such subspace.
     """
-    return composed(f"Linear graph of {derivation.model.name}", _panels(derivation, subspace))
+    return composed(f"Linear graph of {derivation.system.name}", _panels(derivation, subspace))
 
 
 def whole_scene(
-    derivation: Derivation,
+    derivation: Derived,
     subspace: str | Iterable[str] | None = None,
     q: Sequence[float] | None = None,
     hold: Mapping[str, float] | None = None,
@@ -61,25 +61,25 @@ def whole_scene(
         ModelError: there is no such subspace.
     """
     panels = _panels(derivation, subspace)
-    title = f"Linear graph and mechanism of {derivation.model.name}"
+    title = f"Linear graph and mechanism of {derivation.system.name}"
     try:
         found = poses(derivation, q, hold)
     except ModelError as error:
         if hold or q is not None:
             raise
-        remark = f"no sketch: {error.thing} {error.problem}" * bool(derivation.model.bodies)
+        remark = f"no sketch: {error.thing} {error.problem}" * bool(derivation.system.bodies)
         return composed(title, panels, remark=remark)
     sketch = Sketch(found)
     return composed(title, panels, sketch)
 
 
-def whole_svg(derivation: Derivation, subspace: str | Iterable[str] | None = None) -> str:
+def whole_svg(derivation: Derived, subspace: str | Iterable[str] | None = None) -> str:
     """`whole_scene` as SVG."""
     return svg_text(whole_scene(derivation, subspace))
 
 
-def _panels(derivation: Derivation, subspace: str | Iterable[str] | None) -> list[Panel]:
-    kinds = kinds_of(derivation.model)
+def _panels(derivation: Derived, subspace: str | Iterable[str] | None) -> list[Panel]:
+    kinds = kinds_of(derivation.system)
     panels = []
     for names, topology in chosen_panels(derivation, subspace):
         branches = frozenset(edge.name for edge in topology.branches)
@@ -87,7 +87,7 @@ def _panels(derivation: Derivation, subspace: str | Iterable[str] | None) -> lis
     return panels
 
 
-def graph_svg(derivation: Derivation, subspace: str | Iterable[str] | None = None) -> str:
+def graph_svg(derivation: Derived, subspace: str | Iterable[str] | None = None) -> str:
     """`graph_scene` as SVG."""
     return svg_text(graph_scene(derivation, subspace))
 
@@ -120,7 +120,7 @@ def system_svg(projections: Sequence[Projection]) -> str:
 
 
 def chosen_panels(
-    derivation: Derivation, subspace: str | Iterable[str] | None = None
+    derivation: Derived, subspace: str | Iterable[str] | None = None
 ) -> list[tuple[list[str], Topology]]:
     """The trees to show, each with the subspaces it is for: translation and rotation mostly share one.
 
@@ -133,7 +133,7 @@ def chosen_panels(
     return [pair for pair in shown if pair[0]]
 
 
-def topologies(derivation: Derivation) -> list[Topology]:
+def topologies(derivation: Derived) -> list[Topology]:
     """The chosen tree of every subspace that has edges, in the order of the graph."""
     formulation = derivation.formulation
     found = {t.projection.domain: t for t in (formulation.translation, formulation.rotation)}
@@ -166,7 +166,7 @@ def _same(a: Topology, b: Topology) -> bool:
     return [e.name for e in a.branches] == [e.name for e in b.branches]
 
 
-def _wanted(derivation: Derivation, subspace: str | Iterable[str] | None) -> Sequence[str]:
+def _wanted(derivation: Derived, subspace: str | Iterable[str] | None) -> Sequence[str]:
     """The subspaces asked for.
 
     Raises:

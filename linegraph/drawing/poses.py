@@ -11,6 +11,7 @@ from linegraph.components.forces import Load
 from linegraph.errors import ModelError
 from linegraph.kinematics.ground_frames import seated
 from linegraph.kinematics.links import Seat, mass_center, resolved
+from linegraph.model.terminal_graphs import terminals_of
 from linegraph.numeric.loop_closure import at_some_time
 from linegraph.spatial.placement import Placement, compose
 from linegraph.spatial.vector import Vector, transpose
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 
     from linegraph.components.joints import Joint
     from linegraph.dynamics.chords import Chords
+    from linegraph.numeric.derived import Derived
     from linegraph.numeric.reference import Numeric
-    from linegraph.pipeline import Derivation
 
 GROUND_LINK = -1
 
@@ -86,7 +87,7 @@ class Poses:
 
 
 def poses(
-    derivation: Derivation,
+    derivation: Derived,
     q: Sequence[float] | None = None,
     hold: Mapping[str, float] | None = None,
 ) -> Poses:
@@ -100,7 +101,7 @@ def poses(
     Raises:
         ModelError: a parameter has no value, there is no body, or `q` has another length.
     """
-    model = derivation.model
+    model = derivation.system
     if not model.bodies:
         raise ModelError(f'model "{model.name}"', "has no bodies: there is no mechanism to sketch")
     for parameter in model.parameters.values():
@@ -119,8 +120,8 @@ def poses(
     return _gathered(derivation, numeric, at)
 
 
-def _gathered(derivation: Derivation, numeric: Numeric, q: Sequence[float]) -> Poses:
-    model, tree = derivation.model, numeric.tree
+def _gathered(derivation: Derived, numeric: Numeric, q: Sequence[float]) -> Poses:
+    model, tree = derivation.system, numeric.tree
     chords = numeric.chords(q, [0.0] * len(tree.velocities))
     found = Poses(upward=_upward(tree.gravity))
     found.links[GROUND_LINK] = []
@@ -155,11 +156,11 @@ def _gathered(derivation: Derivation, numeric: Numeric, q: Sequence[float]) -> P
 
 
 def _ties(
-    derivation: Derivation, numeric: Numeric, chords: Chords, joints: Mapping[str, Place]
+    derivation: Derived, numeric: Numeric, chords: Chords, joints: Mapping[str, Place]
 ) -> list[Tie]:
     """Force elements, constraints and loads."""
-    model = derivation.model
-    terminals = model.terminals()
+    model = derivation.system
+    terminals = terminals_of(model)
     ties = []
 
     def end(terminal: str) -> tuple[int, Vector]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from linegraph.display import Displayed
 from linegraph.drawing.letters import width
 
 if TYPE_CHECKING:
@@ -132,7 +133,7 @@ class Box:
 
 
 @dataclass(frozen=True, repr=False)
-class Scene:
+class Scene(Displayed):
     """A picture.
 
     Attributes:
@@ -146,12 +147,6 @@ class Scene:
     title: str
     about: str
     items: tuple[Item, ...]
-
-    def _repr_svg_(self) -> str:
-        """The picture a notebook shows."""
-        from linegraph.drawing.svg import svg_text
-
-        return svg_text(self)
 
     def __repr__(self) -> str:
         """What it shows, and its size."""

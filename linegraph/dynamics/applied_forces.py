@@ -19,6 +19,7 @@ from linegraph.dynamics.network_state import ALL, DRIVEN, RESTING, Exchange, Mot
 from linegraph.errors import ModelError
 from linegraph.kinematics.ground_frames import Frame, Pair, seated
 from linegraph.kinematics.links import Seat
+from linegraph.model.terminal_graphs import terminals_of
 from linegraph.spatial import vector
 from linegraph.spatial.rotation import Full, product
 from linegraph.spatial.vector import ZERO, Vector, add, cross, dot, subtract, times
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from linegraph.dynamics.law_names import State
     from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import Closure, KinematicTree
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
 
 
 @dataclass(frozen=True)
@@ -49,14 +50,14 @@ class Applied:
     potential: Scalar = 0
 
 
-def depends_on_inputs(model: Model, values: Sequence[Any]) -> bool:
+def depends_on_inputs(model: System, values: Sequence[Any]) -> bool:
     """Whether a law names an input: then it belongs to Q, otherwise to the bias."""
     inputs = {declared.name for declared in model.inputs}
     return any(names_in(value) & inputs for value in values)
 
 
 def applied(
-    model: Model,
+    model: System,
     tree: KinematicTree,
     algebra: Algebra,
     parameters: Mapping[str, Scalar],
@@ -119,7 +120,7 @@ class Acting:
 
     def __init__(
         self,
-        model: Model,
+        model: System,
         tree: KinematicTree,
         algebra: Algebra,
         parameters: Mapping[str, Scalar],
@@ -145,7 +146,7 @@ class Acting:
                 tree.network, tree, algebra, parameters, state[1], known, self.motion, acceleration
             )
             self._values = ChainMap(names, self.exchange.variables())
-        self._terminals = model.terminals()
+        self._terminals = terminals_of(model)
         self._wrenches: list[tuple[Vector, Vector]] = [(ZERO, ZERO)] * len(tree.links)
         self._efforts: list[Scalar] = [0] * len(tree.velocities)
         self._potential: Scalar = 0

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from linegraph.algebra.scalar import Scalar
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
     from linegraph.networks import Network
 
 XYZ = "xyz"
@@ -87,7 +87,7 @@ def network_powers(
     return powers_, sums
 
 
-def network_quantities(model: Model, network: Network | None, place: int) -> list[Quantity]:
+def network_quantities(model: System, network: Network | None, place: int) -> list[Quantity]:
     """What the across (0) or the through (1) variables of a network's edges are called."""
     found = []
     for branch in network.branches if network is not None else ():
@@ -110,7 +110,7 @@ def reaction_groups(names: Sequence[str]) -> tuple[tuple[Quantity, int], ...]:
     return tuple((Quantity(name, "N, N*m"), 6) for name in names)
 
 
-def reaction_axes(model: Model) -> str:
+def reaction_axes(model: System) -> str:
     """In whose axes reactions are resolved."""
     return {HEAD: "the head's", GROUND_AXES: "ground"}.get(model.choices.reactions, "the tail's")
 
@@ -125,7 +125,7 @@ def across_quantities(names: Sequence[str]) -> tuple[Quantity, ...]:
     )
 
 
-def reaction_quantities(model: Model, names: Sequence[str]) -> tuple[Quantity, ...]:
+def reaction_quantities(model: System, names: Sequence[str]) -> tuple[Quantity, ...]:
     """The names of all reactions."""
     axes = reaction_axes(model)
     return tuple(

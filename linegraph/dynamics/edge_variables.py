@@ -25,6 +25,7 @@ from linegraph.dynamics.orthogonality import applied_to
 from linegraph.kinematics.ground_frames import GROUND_FRAME, Frame, Pair, frames, seated
 from linegraph.kinematics.links import Seat, mass_center
 from linegraph.model.choices import GROUND_AXES, HEAD
+from linegraph.model.terminal_graphs import terminals_of
 from linegraph.spatial.vector import (
     ZERO,
     Vector,
@@ -46,9 +47,9 @@ if TYPE_CHECKING:
     from linegraph.dynamics.chords import Chords, Equation
     from linegraph.dynamics.law_names import State
     from linegraph.kinematics.arms import Arm
+    from linegraph.kinematics.formulated import Formulated
     from linegraph.kinematics.links import Closure, KinematicTree
-    from linegraph.model.builder import Model
-    from linegraph.pipeline import Derivation
+    from linegraph.model.system import System
 
 
 class InverseScheme:
@@ -68,7 +69,7 @@ class InverseScheme:
 
     def __init__(
         self,
-        derivation: Derivation,
+        derivation: Formulated,
         tree: KinematicTree,
         algebra: Algebra,
         parameters: Mapping[str, Scalar],
@@ -79,7 +80,7 @@ class InverseScheme:
         multipliers: Sequence[tuple[Equation, Scalar]] = (),
     ) -> None:
         """Nothing is calculated before it is asked for."""
-        self._model: Model = derivation.model
+        self._model: System = derivation.system
         self._walk = derivation.topology.walk
         self._tree = tree
         self._algebra = algebra
@@ -88,7 +89,7 @@ class InverseScheme:
         self._state = state
         self._multipliers = multipliers
         self._frames = frames(tree, algebra, crossed, acceleration)
-        self._terminals = self._model.terminals()
+        self._terminals = terminals_of(self._model)
         self._known: dict[str, Frame] = {}
         self._acting = Acting(
             self._model, tree, algebra, parameters, chords, state, acceleration=acceleration

@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from linegraph.components.constraints.relation import Relation
     from linegraph.dynamics.chords import Chords
     from linegraph.kinematics.links import KinematicTree
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
 
 State = tuple[tuple[Any, ...], tuple[Any, ...]]
 """q and v."""
 
 
 def scope(
-    model: Model,
+    model: System,
     tree: KinematicTree,
     algebra: Algebra,
     parameters: Mapping[str, Scalar],
@@ -74,7 +74,7 @@ def joint_state(tree: KinematicTree, joint: str, state: State) -> Any:
 
 
 def relations(
-    model: Model,
+    model: System,
     tree: KinematicTree,
     algebra: Algebra,
     parameters: Mapping[str, Scalar],
@@ -123,7 +123,7 @@ def relations(
 
 
 def require_linear(
-    model: Model,
+    model: System,
     tree: KinematicTree,
     algebra: Algebra,
     parameters: Mapping[str, Scalar],
@@ -161,7 +161,7 @@ def require_linear(
             raise ModelError(who, problem)
 
 
-def _require_no_input(model: Model, relation: Relation) -> None:
+def _require_no_input(model: System, relation: Relation) -> None:
     inputs = {declared.name for declared in model.inputs}
     for name in sorted(names_in(relation.rate) & inputs):
         problem = (
@@ -170,7 +170,7 @@ def _require_no_input(model: Model, relation: Relation) -> None:
         raise ModelError(f'relation "{relation.name}"', problem)
 
 
-def _require_branches(model: Model, tree: KinematicTree, relation: Relation) -> None:
+def _require_branches(model: System, tree: KinematicTree, relation: Relation) -> None:
     names = names_in(relation.rate)
     for joint in model.joints:
         own = {x for q in joint.positions() for x in (q.name, f"der({q.name})")}

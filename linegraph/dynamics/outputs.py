@@ -15,6 +15,7 @@ from linegraph.components.parameters import names_in, resolver
 from linegraph.components.validation import nearest
 from linegraph.dynamics.law_names import scope
 from linegraph.errors import ModelError
+from linegraph.model.terminal_graphs import terminals_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from linegraph.dynamics.edge_variables import InverseScheme
     from linegraph.dynamics.law_names import State
     from linegraph.kinematics.links import KinematicTree
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
 
 OF_POINTS = {
     "position": "origin",
@@ -39,7 +40,7 @@ DYNAMIC = ("acceleration", "angular_acceleration", "force", "torque")
 
 
 def observed(
-    model: Model,
+    model: System,
     tree: KinematicTree,
     algebra: Algebra,
     parameters: Mapping[str, Scalar],
@@ -73,10 +74,12 @@ def observed(
     return found, dynamic
 
 
-def _edge_variable(model: Model, scheme: InverseScheme, kind: str, thing: str, part: str) -> Scalar:
+def _edge_variable(
+    model: System, scheme: InverseScheme, kind: str, thing: str, part: str
+) -> Scalar:
     """One variable of an edge or a point."""
     if kind in OF_POINTS:
-        known = [*model.terminals(), *(f"{body}.mass_center" for body in model.bodies)]
+        known = [*terminals_of(model), *(f"{body}.mass_center" for body in model.bodies)]
         if thing not in known:
             raise ModelError(
                 "", f"{kind}({thing}): there is no such terminal; {nearest(thing, known)}"

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from linegraph.algebra.scalar import Scalar
     from linegraph.components.forces import Load
     from linegraph.components.forces.base import Resolve
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
 
 X, RATE, NAME = "x", "v", "name"
 SAMPLES = 8
@@ -37,7 +37,9 @@ class _Unknown(Exception):
     """The energy is not known; says why."""
 
 
-def stored(model: Model, element: Element, algebra: Algebra, x: Scalar, resolve: Resolve) -> Scalar:
+def stored(
+    model: System, element: Element, algebra: Algebra, x: Scalar, resolve: Resolve
+) -> Scalar:
     """The potential energy of an element at x (J); 0 where it is not known.
 
     Args:
@@ -64,7 +66,7 @@ def stored(model: Model, element: Element, algebra: Algebra, x: Scalar, resolve:
     return Replay(algebra, symbol)(found)
 
 
-def holds(model: Model, element: Element | Load) -> bool:
+def holds(model: System, element: Element | Load) -> bool:
     """Whether an element that inputs drive has a potential energy: a law with a part that they do not."""
     if not isinstance(element, (Law, Spring)):
         return False
@@ -76,7 +78,7 @@ def holds(model: Model, element: Element | Load) -> bool:
         return False
 
 
-def unknown(model: Model) -> dict[str, str]:
+def unknown(model: System) -> dict[str, str]:
     """The force elements whose potential energy is not known, and why."""
     found = {}
     for element in model.force_elements:
@@ -89,7 +91,7 @@ def unknown(model: Model) -> dict[str, str]:
     return found
 
 
-def require_energies(model: Model) -> None:
+def require_energies(model: System) -> None:
     """Refuse an `energy` whose derivative with respect to x is not the force at rest.
 
     Raises:
@@ -131,7 +133,7 @@ def _law(element: Element | Load) -> Any:
     return element.stiffness if force is None and isinstance(element, Spring) else force
 
 
-def _potential(model: Model, element: Element | Load) -> Scalar | None:
+def _potential(model: System, element: Element | Load) -> Scalar | None:
     """The energy over the DAG of a trace; None of an element that knows its own.
 
     Raises:
@@ -161,7 +163,7 @@ def _potential(model: Model, element: Element | Load) -> Scalar | None:
     return found
 
 
-def _require_own(model: Model, value: Any, what: str) -> None:
+def _require_own(model: System, value: Any, what: str) -> None:
     """Refuse a spring whose values others change: no energy of x belongs to it."""
     trace = _Trace(model)
     for name in sorted(names_in(value)):
@@ -172,7 +174,7 @@ def _require_own(model: Model, value: Any, what: str) -> None:
 class _Trace:
     """Expressions of one element over a DAG of their own: x, v, and names."""
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: System) -> None:
         self.dag = Dag()
         self.calculus = Calculus(self.dag)
         self.x = self.dag.symbol(X)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from linegraph.formulation.formulate import Formulation
     from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import KinematicTree, Link
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
     from linegraph.spatial.inertia import Moments
 
     Entry = tuple[int, int, float]
@@ -51,7 +51,7 @@ class Idle:
     moved: str
 
 
-def require_motion(model: Model, tree: KinematicTree) -> None:
+def require_motion(model: System, tree: KinematicTree) -> None:
     """Refuse a model without states.
 
     Raises:
@@ -144,14 +144,14 @@ def listed(names: Sequence[str]) -> str:
     return ", ".join(names[:-1]) + " and " * (len(names) > 1) + names[-1]
 
 
-def sample_tree(model: Model, formulation: Formulation) -> KinematicTree:
+def sample_tree(model: System, formulation: Formulation) -> KinematicTree:
     """The links in numbers: the parameters' own values where they have some, any time, any inputs."""
     anywhere = Floats(t=model.bounds.sometime, u=_Anything())
     values = sample_values(model.parameters.values(), anywhere)
     return kinematic_tree(model, formulation, anywhere, values)
 
 
-def _nothing(model: Model) -> str:
+def _nothing(model: System) -> str:
     """What to tell of a model without states."""
     if not model.components:
         return "no joint can move: there is nothing to derive"

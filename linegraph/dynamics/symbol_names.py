@@ -10,12 +10,12 @@ from linegraph.model.name_register import Claim, Free, declared, require_distinc
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from linegraph.pipeline import Derivation
+    from linegraph.kinematics.formulated import Formulated
 
 MULTIPLIERS = "lam"
 
 
-def symbol_names(derivation: Derivation) -> dict[str, tuple[str, ...]]:
+def symbol_names(derivation: Formulated) -> dict[str, tuple[str, ...]]:
     """The names of all entries of each argument, no two alike, and none that the model declares.
 
     Coordinates and velocities have their own names, the rate of a coordinate x is ``x_dot``. Whatever a
@@ -27,7 +27,7 @@ def symbol_names(derivation: Derivation) -> dict[str, tuple[str, ...]]:
     Raises:
         ModelError: the model declares a name twice; names both owners.
     """
-    model, tree = derivation.model, derivation.structure
+    model, tree = derivation.system, derivation.structure
     network = derivation.formulation.network
     owners = require_distinct([*declared(model), *_of_networks(derivation)], model.places)
     positions = [quantity.name for quantity in tree.positions]
@@ -64,7 +64,7 @@ def symbol_names(derivation: Derivation) -> dict[str, tuple[str, ...]]:
     }
 
 
-def _of_networks(derivation: Derivation) -> Iterator[Claim]:
+def _of_networks(derivation: Formulated) -> Iterator[Claim]:
     """The names that networks add: their states, and derivatives of inputs that they need.
 
     A state whose name a parameter has gives way: in emitted code they are different arguments.
@@ -73,7 +73,7 @@ def _of_networks(derivation: Derivation) -> Iterator[Claim]:
     if network is None:
         return
     for state in network.states:
-        if state.quantity.name in derivation.model.parameters:
+        if state.quantity.name in derivation.system.parameters:
             continue
         owner = network.owner(state)
         thing = f'{owner.kind} "{owner.name}"'

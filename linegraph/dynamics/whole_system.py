@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     from linegraph.dynamics.network_state import Exchange
     from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import KinematicTree
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
 
 Entries = list[tuple[int, int, "Scalar"]]
 
 
 def exchange_at(
-    model: Model,
+    model: System,
     tree: KinematicTree,
     algebra: Algebra,
     parameters: Mapping[str, Scalar],

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.errors import ModelError
 from linegraph.files import write_all
-from linegraph.pipeline import derive, placed
+from linegraph.model.system import placed
+from linegraph.numeric.derived import Derived
+from linegraph.pipeline import derived
 from linegraph.programs.frame_names import named_frames
 from linegraph.programs.register import ON_REQUEST, PROGRAMS, module_of
 from linegraph.version import __version__
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from linegraph.ir.program import Module
     from linegraph.kinematics.frame_trees import NamedFrame
     from linegraph.model.builder import Model
+    from linegraph.model.system import System
 
 CONVENTIONS = (
     "Angles are in radians. Quaternions are (x, y, z, w) and must have length 1. A free joint has "
@@ -32,7 +35,7 @@ CONVENTIONS = (
 
 
 def emit(
-    model: Model,
+    model: Model | System,
     out: str | os.PathLike[str] = ".",
     *,
     name: str | None = None,
@@ -49,7 +52,7 @@ def emit(
     """Derive a model and write its functions as source files.
 
     Args:
-        model: the system.
+        model: the builder or the system.
         out: the folder, made if need be.
         name: prefix of functions and files; default the model's name, cleaned to an identifier.
         languages: some of `codegen.LANGUAGES`; default all, for Arduino C alone.
@@ -96,7 +99,7 @@ def emit(
 
 
 def render(
-    model: Model,
+    model: Model | System,
     *,
     name: str | None = None,
     languages: Iterable[str] | None = None,
@@ -129,16 +132,20 @@ def render(
         raise ModelError(f"options of {whose} ({given})", problem)
     prefix = codegen.naming.identifier(model.name) if name is None else name
     tell("deriving")
-    module = module_for(model, prefix, folded=folded, functions=functions, only=only, frames=frames)
+    _require_known(functions, only)
+    system = model.system()
+    named = named_frames(system, frames)
+    derivation = derived(system, Derived)
+    module = _module(derivation, prefix, named, folded=folded, functions=functions, only=only)
     if module.omitted:
-        (warn or _python_warning)(str(derive(model).no_inverse(module.omitted, asked=False)))
+        (warn or _python_warning)(str(derivation.no_inverse(module.omitted, asked=False)))
     files: dict[str, str] = {}
     for language in chosen:
         tell(f"writing {language}")
         files |= codegen.render(module, language, choices)
     if tests:
         tell("computing golden vectors")
-        found = _vectors(model, module, named_frames(model, frames))
+        found = _vectors(derivation, module, named)
         for language in chosen:
             checks = codegen.render_tests(module, found, language, choices)
             if not checks:
@@ -156,18 +163,18 @@ def _several(names: Iterable[str]) -> tuple[str, ...]:
     return (names,) if isinstance(names, str) else tuple(names)
 
 
-def _vectors(model: Model, module: Module, frames: Sequence[NamedFrame]) -> Vectors:
+def _vectors(derivation: Derived, module: Module, frames: Sequence[NamedFrame]) -> Vectors:
     """Golden vectors of a module."""
     from linegraph.verification import golden
 
     try:
-        return golden.vectors(derive(model), module, frames=frames)
+        return golden.vectors(derivation, module, frames=frames)
     except ModelError as error:
-        raise placed(error, model) from None
+        raise placed(error, derivation.system) from None
 
 
 def module_for(
-    model: Model,
+    model: Model | System,
     name: str,
     *,
     folded: bool = False,
@@ -185,25 +192,43 @@ def module_for(
         >>> module_for(model, "m", only=("frames", "center_of_mass"), frames=("bob",)).programs[:2]
         (<program frame_bob_pose(q): 2 operations>, <program frame_bob_velocity(q, v): 0 operations>)
     """
-    about = [f"Equations of motion of {model.name}, derived by linegraph {__version__}."]
-    about += [text for text in (model.about,) if text]
     wanted, few = tuple(functions), tuple(only)
-    for known, chosen in ((ON_REQUEST, wanted), (tuple(PROGRAMS), few)):
+    _require_known(wanted, few)
+    system = model.system()
+    named = named_frames(system, frames)
+    return _module(derived(system, Derived), name, named, folded=folded, functions=wanted, only=few)
+
+
+def _require_known(wanted: Iterable[str], only: Iterable[str]) -> None:
+    """Refuse functions that are not promised."""
+    for known, chosen in ((ON_REQUEST, wanted), (tuple(PROGRAMS), only)):
         for function in chosen:
             if function not in known:
                 raise ModelError(f'function "{function}"', f"is not one of {', '.join(known)}")
-    about = [*about, *CONVENTIONS]
-    named = named_frames(model, frames)
-    derivation = derive(model)
+
+
+def _module(
+    derivation: Derived,
+    name: str,
+    frames: Sequence[NamedFrame],
+    *,
+    folded: bool,
+    functions: Sequence[str],
+    only: Sequence[str],
+) -> Module:
+    """The programs of a derivation, errors with their place in the model's file."""
+    system = derivation.system
+    about = [f"Equations of motion of {system.name}, derived by linegraph {__version__}."]
+    about += [text for text in (system.about,) if text]
     try:
         return module_of(
             derivation,
             name,
             folded=folded,
-            about=about,
-            wanted=wanted,
-            only=few,
-            frames=named,
+            about=[*about, *CONVENTIONS],
+            wanted=functions,
+            only=only,
+            frames=frames,
         )
     except ModelError as error:
-        raise placed(error, model) from None
+        raise placed(error, system) from None

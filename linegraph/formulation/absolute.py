@@ -10,7 +10,7 @@ from linegraph.model.name_register import declared, numbered
 
 if TYPE_CHECKING:
     from linegraph.formulation.formulate import Formulation
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
 
 
 def floating(body: str, stem: str) -> Free:
@@ -26,7 +26,7 @@ def turning(joint: str, body: str, stem: str) -> Spherical:
     return Spherical(stem, (joint, body), effort=False)
 
 
-def stems_of(model: Model, formulation: Formulation) -> dict[str, str]:
+def stems_of(model: System, formulation: Formulation) -> dict[str, str]:
     """What the coordinates of each body begin with: nothing that the model declares has such a name.
 
     The body's name, or that with ``_body`` after it where one of the coordinates would meet another name, as

@@ -32,13 +32,14 @@ from linegraph.formulation.planarity import Angle, absolute_angles, related
 from linegraph.graph.forest import Topology, choose_forest
 from linegraph.graph.multigraph import Projection
 from linegraph.model.choices import ABSOLUTE, ABSOLUTE_ANGLE, AUTOMATIC
+from linegraph.model.terminal_graphs import terminals_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from linegraph.components.scalar.branches import Branch
     from linegraph.graph.multigraph import Edge, SystemGraph
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
     from linegraph.networks import Network
 
 INERTIA_WEIGHT = 7.0
@@ -69,7 +70,7 @@ class Formulation:
     network: Network | None = None
 
 
-def formulate(model: Model, graph: SystemGraph) -> Formulation:
+def formulate(model: System, graph: SystemGraph) -> Formulation:
     """Choose the trees of a mechanical model.
 
     Raises:
@@ -104,7 +105,7 @@ def _mechanics(graph: SystemGraph, domain: str) -> Projection:
     return graph[domain] if domain in graph.domains else Projection(domain, (GROUND,), ())
 
 
-def _explained(error: ModelError, model: Model) -> ModelError:
+def _explained(error: ModelError, model: System) -> ModelError:
     """Say which joints were wanted because they are coupled."""
     coupled = [name for name in _coupled(model) if name not in model.choices.tree]
     if not coupled:
@@ -115,21 +116,21 @@ def _explained(error: ModelError, model: Model) -> ModelError:
     return ModelError(error.thing if wanted else f'joint "{coupled[0]}"', problem)
 
 
-def _is_arm(model: Model, edge: Edge) -> bool:
+def _is_arm(model: System, edge: Edge) -> bool:
     """Whether an edge is a rigid arm of a body or of ground."""
     return edge.component in (GROUND, *model.bodies) and edge.name.startswith(
         f"{edge.component}/arm"
     )
 
 
-def _absolute(model: Model) -> tuple[str, ...]:
+def _absolute(model: System) -> tuple[str, ...]:
     """The bodies whose inertia edge is a branch in both trees.
 
     Where all bodies are to be absolute, those at the head of a joint that has to be a branch are not.
     """
     held = {*_coupled(model), *(j.name for j in model.joints if isinstance(j, Compound))}
     held |= related(model)
-    terminals = model.terminals()
+    terminals = terminals_of(model)
     ends = (joint.between[::-1] for joint in model.joints if joint.name in held)
     bodies = [[terminals[end][0] for end in pair if end in terminals] for pair in ends]
     spared = {next((b for b in pair if b != GROUND), "") for pair in bodies}
@@ -142,13 +143,13 @@ def _absolute(model: Model) -> tuple[str, ...]:
     )
 
 
-def _coupled(model: Model) -> list[str]:
+def _coupled(model: System) -> list[str]:
     """The joints that follow others or are followed."""
     joints = {joint.name for joint in model.joints if joint.freedoms == 1}
     return [n for c in model.couplings for n in (c.joint, c.master) if n in joints]
 
 
-def _wanted(model: Model, absolute: tuple[str, ...]) -> list[str]:
+def _wanted(model: System, absolute: tuple[str, ...]) -> list[str]:
     """Edges that must be branches: as the user says, and those that cannot be chords."""
     inertia = (f"{name}/inertia" for name in absolute)
     components = {branch.name for branch in _network_edges(model)}
@@ -157,7 +158,7 @@ def _wanted(model: Model, absolute: tuple[str, ...]) -> list[str]:
     return list(dict.fromkeys(wanted))
 
 
-def edge_weights(model: Model, projection: Projection) -> dict[str, float]:
+def edge_weights(model: System, projection: Projection) -> dict[str, float]:
     """The weight of every edge that is not a rigid arm; those weigh nothing."""
     acting = {e.joint for e in model.elements if isinstance(e, Element) and e.joint is not None}
     depth = _depths(projection)
@@ -196,7 +197,7 @@ def _depths(projection: Projection) -> dict[str, int]:
     return {vertex: depth.get(vertex, 0) for vertex in projection.vertices}
 
 
-def _level(model: Model, translation: Topology) -> dict[str, Angle]:
+def _level(model: System, translation: Topology) -> dict[str, Angle]:
     """The joints beyond which a body's orientation is measured from ground."""
     kinds = {name: model.choices.kind(name) for name in model.bodies}
     wanted = {name for name, kind in kinds.items() if kind in (ABSOLUTE_ANGLE, AUTOMATIC)}
@@ -217,7 +218,7 @@ def _rotation(
     return choose_forest(projection, roots=(GROUND,), branches=names)
 
 
-def _require_known(model: Model) -> None:
+def _require_known(model: System) -> None:
     """Refuse a wish for edges, bodies or kinds that do not exist."""
     edges = [joint.name for joint in model.joints] + [f"{name}/inertia" for name in model.bodies]
     edges += [branch.name for branch in _network_edges(model) if not branch.port.spatial]
@@ -233,7 +234,7 @@ def _require_known(model: Model) -> None:
             raise ModelError(f'body "{name}"', problem)
 
 
-def _require_held(model: Model, translation: Topology, absolute: tuple[str, ...]) -> None:
+def _require_held(model: System, translation: Topology, absolute: tuple[str, ...]) -> None:
     """Refuse a part that only inertia edges or force elements connect to ground."""
     joints = {joint.name for joint in model.joints}
     for edge in translation.branches:
@@ -244,7 +245,7 @@ def _require_held(model: Model, translation: Topology, absolute: tuple[str, ...]
             raise ModelError(f'body "{edge.component}"', problem)
 
 
-def _require_followers(model: Model, branches: frozenset[str]) -> None:
+def _require_followers(model: System, branches: frozenset[str]) -> None:
     """Refuse a follower that a loop has made a chord: its angle would be known only up to full turns."""
     names = {joint.name for joint in model.joints}
     for coupling in model.couplings:
@@ -256,7 +257,7 @@ def _require_followers(model: Model, branches: frozenset[str]) -> None:
                 raise ModelError(f'joint "{part}"', problem)
 
 
-def _network_of(model: Model) -> Network | None:
+def _network_of(model: System) -> Network | None:
     """The network of a model; what derives it is imported where there is one."""
     if not model.components:
         return None
@@ -265,7 +266,7 @@ def _network_of(model: Model) -> Network | None:
     return network_of(model)
 
 
-def _network_edges(model: Model) -> Sequence[Branch]:
+def _network_edges(model: System) -> Sequence[Branch]:
     """The edges of a model's components."""
     if not model.components:
         return ()

@@ -9,6 +9,7 @@ from linegraph.algebra.protocol import Floats
 from linegraph.components.body import GROUND
 from linegraph.components.joints import Fixed, Prismatic, Revolute, Spherical, Universal
 from linegraph.components.parameters import names_in, resolver, sample_values
+from linegraph.model.terminal_graphs import terminals_of
 from linegraph.spatial.rotation import IDENTITY_MATRIX, product
 from linegraph.spatial.vector import Vector, dot, times, transpose
 
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
     from linegraph.components.joints import Joint
     from linegraph.graph.forest import Step, Topology
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
     from linegraph.spatial.vector import Matrix
 
 IN_LINE = 1e-9
@@ -54,7 +55,7 @@ class _Pose(NamedTuple):
     spatial: bool = False
 
 
-def absolute_angles(model: Model, topology: Topology, wanted: Set[str]) -> dict[str, Angle]:
+def absolute_angles(model: System, topology: Topology, wanted: Set[str]) -> dict[str, Angle]:
     """For each joint that reaches one of the `wanted` bodies by a turn about its origin: the angle.
 
     A body reached by a joint that shifts keeps the joint's own coordinates, and so do prescribed and
@@ -63,7 +64,7 @@ def absolute_angles(model: Model, topology: Topology, wanted: Set[str]) -> dict[
     return _Survey(model, wanted).along(topology)
 
 
-def related(model: Model) -> set[str]:
+def related(model: System) -> set[str]:
     """The joints whose coordinates or rates a relation names: it needs them as coordinates of the tree."""
     names = {name for relation in model.relations for name in names_in(relation.rate)}
     return {
@@ -76,7 +77,7 @@ def related(model: Model) -> set[str]:
 class _Survey:
     """Follows directions from ground outward."""
 
-    def __init__(self, model: Model, wanted: Set[str]) -> None:
+    def __init__(self, model: System, wanted: Set[str]) -> None:
         algebra = Floats(t=0.0)
         values = sample_values(model.parameters.values(), algebra)
         self._resolve = resolver(algebra, values)
@@ -84,7 +85,7 @@ class _Survey:
         self._held = {name for c in model.couplings for name in (c.joint, c.master)} | related(
             model
         )
-        self._terminals = model.terminals()
+        self._terminals = terminals_of(model)
         self._wanted = wanted
         self._poses = {GROUND: _Pose(IDENTITY_MATRIX, None, ())}
         self._found: dict[str, Angle] = {}

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
+from linegraph.display import Displayed
 from linegraph.errors import ModelError
 from linegraph.graph.multigraph import Edge, IntegerMatrix, Projection
 
@@ -36,7 +37,7 @@ class Step(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class Topology:
+class Topology(Displayed):
     """A projection of the system graph with a forest chosen in it.
 
     Attributes:
@@ -119,12 +120,6 @@ class Topology:
         """Its size."""
         domain = self.projection.domain
         return f"<tree in {domain}: {len(self.branches)} branches, {len(self.chords)} chords>"
-
-    def _repr_svg_(self) -> str:
-        """The picture a notebook shows."""
-        from linegraph.drawing.pictures import topology_svg
-
-        return topology_svg(self)
 
     @property
     def _circuits(self) -> IntegerMatrix:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from linegraph.display import Displayed
 from linegraph.errors import ModelError
 
 if TYPE_CHECKING:
@@ -117,7 +118,7 @@ class IntegerMatrix:
 
 
 @dataclass(frozen=True, repr=False)
-class Projection:
+class Projection(Displayed):
     """The system graph seen in one domain.
 
     Attributes:
@@ -153,15 +154,9 @@ class Projection:
         """Its size."""
         return f"<{self.domain}: {len(self.vertices)} vertices, {len(self.edges)} edges>"
 
-    def _repr_svg_(self) -> str:
-        """The picture a notebook shows."""
-        from linegraph.drawing.pictures import projection_svg
-
-        return projection_svg(self)
-
 
 @dataclass(frozen=True, repr=False)
-class SystemGraph:
+class SystemGraph(Displayed):
     """The united terminal graph: its projections on the domains, in the order these first appear."""
 
     projections: tuple[Projection, ...]
@@ -180,12 +175,6 @@ class SystemGraph:
     def __repr__(self) -> str:
         """Its subspaces."""
         return f"<system graph in {', '.join(self.domains)}>"
-
-    def _repr_svg_(self) -> str:
-        """The picture a notebook shows: all subspaces."""
-        from linegraph.drawing.pictures import system_svg
-
-        return system_svg(self.projections)
 
 
 def unite(terminal_graphs: Iterable[Iterable[Edge]]) -> SystemGraph:

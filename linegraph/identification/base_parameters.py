@@ -25,10 +25,10 @@ from linegraph.identification.standard_parameters import JOINT_PARTS
 from linegraph.ir.dag import Node
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from linegraph.algebra.scalar import Scalar
-    from linegraph.pipeline import Derivation
+    from linegraph.numeric.derived import Derived
 
 Expr = Any
 Array = Any
@@ -50,6 +50,7 @@ class BaseParameters:
         without_effect: the places of those that no motion shows; also in `dependent`.
         entries: K by row and column, zeros left out: numbers, or nodes of parameters of the model.
         derivation: what they are of.
+        of_model: pi of the model's own numbers, for the values of parameters that are given.
 
     Example:
         >>> from linegraph import Model, derive
@@ -73,7 +74,8 @@ class BaseParameters:
     dependent: tuple[int, ...]
     without_effect: tuple[int, ...]
     entries: Mapping[tuple[int, int], Scalar]
-    derivation: Derivation
+    derivation: Derived
+    of_model: Callable[[Mapping[str, float]], Array]
 
     @property
     def count(self) -> int:
@@ -131,12 +133,10 @@ class BaseParameters:
 
     def standard(self, parameters: Mapping[str, float] | None = None) -> Array:
         """Pi of the model's own numbers."""
-        function = self.derivation.function("inertial_parameters")
-        given = parameters or {}
-        return function(parameters=given) if given else function()
+        return self.of_model(parameters or {})
 
     def _values(self, given: Mapping[str, float]) -> dict[str, float]:
-        declared = self.derivation.model.parameters
+        declared = self.derivation.system.parameters
         for name in given:
             if name not in declared:
                 raise ModelError(f'parameter "{name}"', f"is not there; {nearest(name, declared)}")

@@ -17,12 +17,12 @@ from linegraph.spatial.placement import Placement
 from linegraph.spatial.vector import negate
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from linegraph.algebra.scalar import Scalar
     from linegraph.kinematics.links import KinematicTree, Link
+    from linegraph.numeric.derived import Derived
     from linegraph.numeric.reference import Numeric
-    from linegraph.pipeline import Derivation
 
 Array = Any
 
@@ -48,14 +48,20 @@ ROUNDING = 1e-13
 """Of such a factor, to be taken for an integer."""
 
 
-def base_parameters(derivation: Derivation) -> BaseParameters:
+def base_parameters(
+    derivation: Derived, of_model: Callable[[Mapping[str, float]], Any]
+) -> BaseParameters:
     """The base parameters of a model.
+
+    Args:
+        derivation: the model.
+        of_model: its standard parameters pi in numbers, for the values of parameters that are given.
 
     Raises:
         ModelError: nothing moves; or coupled or prescribed motions make a relation whose coefficients
             depend on parameters of the model.
     """
-    model, tree = derivation.model, derivation.structure
+    model, tree = derivation.system, derivation.structure
     if not tree.links:
         raise ModelError(
             f'model "{model.name}"', "has no links that move: it has no base parameters"
@@ -85,10 +91,11 @@ def base_parameters(derivation: Derivation) -> BaseParameters:
         tuple(pivot for pivot in dependent if len(vectors[pivot]) == 1),
         entries,
         derivation,
+        of_model,
     )
 
 
-def members_of(derivation: Derivation, tree: KinematicTree, *, own_values: bool) -> list[Member]:
+def members_of(derivation: Derived, tree: KinematicTree, *, own_values: bool) -> list[Member]:
     """The links of a tree of the model, as relations see them.
 
     Args:
@@ -97,7 +104,7 @@ def members_of(derivation: Derivation, tree: KinematicTree, *, own_values: bool)
         own_values: whether the latter.
     """
     samples = [derivation.numeric()] if own_values else _samples(derivation)
-    seen = axes(derivation.model, tree)
+    seen = axes(derivation.system, tree)
     return _members(tree, [numeric.tree for numeric in samples], seen)
 
 
@@ -108,14 +115,14 @@ def _node(x: Scalar) -> Scalar:
 # ---- geometry with its values at samples
 
 
-def _samples(derivation: Derivation) -> list[Numeric]:
+def _samples(derivation: Derived) -> list[Numeric]:
     """The model at random parameters of the size of its own, closer to these where it is not defined.
 
     Raises:
         ModelError: it is not defined anywhere near.
     """
     draw = random.Random(0)
-    parameters = [p for p in derivation.model.parameters.values() if not p.derived]
+    parameters = [p for p in derivation.system.parameters.values() if not p.derived]
     found: list[Numeric] = []
     wanted = SAMPLES if parameters else 1
     for attempt in range(TRIES):
@@ -130,10 +137,10 @@ def _samples(derivation: Derivation) -> list[Numeric]:
         if len(found) == wanted:
             return found
     problem = "its geometry is not defined for parameters near their own values"
-    raise ModelError(f'model "{derivation.model.name}"', problem)
+    raise ModelError(f'model "{derivation.system.name}"', problem)
 
 
-def _numeric(derivation: Derivation, values: dict[str, float], draw: random.Random) -> Numeric:
+def _numeric(derivation: Derived, values: dict[str, float], draw: random.Random) -> Numeric:
     u = [draw.uniform(-1, 1) for _ in derivation.structure.inputs]
     return derivation.numeric(values, draw.uniform(0.1, 0.9), u)
 
@@ -243,7 +250,7 @@ def _fill(Y: Array, numeric: Numeric, seen: Sequence[Axis], state: tuple[list[fl
             Y[freedom.index, count + 3 * m + 2] = freedom.ratio * axis.rate(a)
 
 
-def in_numbers(derivation: Derivation, sample: Numeric, seed: int) -> list[Numeric]:
+def in_numbers(derivation: Derived, sample: Numeric, seed: int) -> list[Numeric]:
     """A sample at several times and inputs, where prescribed motions depend on them."""
     places = derivation.structure.layout.places.values()
     if not any(place.drive for place in places):
@@ -254,7 +261,7 @@ def in_numbers(derivation: Derivation, sample: Numeric, seed: int) -> list[Numer
 
 
 def _completed(
-    derivation: Derivation,
+    derivation: Derived,
     samples: Sequence[Numeric],
     seen: Sequence[Axis],
     vectors: dict[int, dict[int, Scalar]],
@@ -288,7 +295,7 @@ def _order(tree: KinematicTree, seen: Sequence[Axis]) -> list[int]:
 
 
 def _table(
-    derivation: Derivation, seen: Sequence[Axis], n: int, sample: Numeric, left: Sequence[int]
+    derivation: Derived, seen: Sequence[Axis], n: int, sample: Numeric, left: Sequence[int]
 ) -> Array:
     """Columns of Y at random states, at more of them than there are columns."""
     numerics = in_numbers(derivation, sample, n)
@@ -320,7 +327,7 @@ def _pivots(table: Array) -> list[int]:
 
 
 def _solved(
-    derivation: Derivation, tables: Sequence[Array], pivots: Sequence[int]
+    derivation: Derived, tables: Sequence[Array], pivots: Sequence[int]
 ) -> list[tuple[int, dict[int, Scalar]]]:
     """Each pivot's relation, the same for all samples.
 
@@ -343,7 +350,7 @@ def _solved(
             "coupled or prescribed motions tie its parameters together by factors that depend on other "
             "parameters of the model; give numbers instead of these to get the factors in numbers"
         )
-        raise ModelError(f'model "{derivation.model.name}"', problem)
+        raise ModelError(f'model "{derivation.system.name}"', problem)
     found = []
     for n, pivot in enumerate(pivots):
         vector: dict[int, Scalar] = {pivot: 1}

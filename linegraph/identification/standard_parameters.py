@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from linegraph.components.forces import Element, Load
     from linegraph.kinematics.links import KinematicTree
     from linegraph.kinematics.state_layout import Freedom
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
 
 MOMENTS = ("m", "mx", "my", "mz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz")
 """The ten of a link, in this order: that of Pinocchio's `toDynamicParameters`."""
@@ -89,7 +89,7 @@ def homes(tree: KinematicTree) -> list[Home]:
     return [found[i] for i in range(len(tree.links))]
 
 
-def axes(model: Model, tree: KinematicTree) -> list[Axis]:
+def axes(model: System, tree: KinematicTree) -> list[Axis]:
     """The joints that have parameters of their own, in declared order."""
     followers = {coupling.joint for coupling in model.couplings}
     found = []
@@ -103,14 +103,14 @@ def axes(model: Model, tree: KinematicTree) -> list[Axis]:
     return found
 
 
-def _width(model: Model, joint: str) -> Any:
+def _width(model: System, joint: str) -> Any:
     """The width of a joint's first friction element; that of the word's default where there is none."""
     own = (e for e in model.force_elements if isinstance(e, Friction) and e.joint == joint)
     constant = (e.width for e in own if names_in(e.width) <= set(model.parameters))
     return next(constant, Friction.width)
 
 
-def quantities(model: Model, tree: KinematicTree) -> tuple[Quantity, ...]:
+def quantities(model: System, tree: KinematicTree) -> tuple[Quantity, ...]:
     """The standard parameters with their units, links before joints."""
     found = []
     for home in homes(tree):
@@ -135,7 +135,7 @@ def quantities(model: Model, tree: KinematicTree) -> tuple[Quantity, ...]:
 
 
 def link_values(
-    model: Model, tree: KinematicTree, algebra: Algebra, parameters: Mapping[str, Scalar]
+    model: System, tree: KinematicTree, algebra: Algebra, parameters: Mapping[str, Scalar]
 ) -> list[Scalar]:
     """The ten moments of each link, of the model's own numbers."""
     resolve = resolver(algebra, parameters)
@@ -171,7 +171,7 @@ class Bearings:
 
 
 def friction_values(
-    model: Model,
+    model: System,
     tree: KinematicTree,
     algebra: Algebra,
     parameters: Mapping[str, Scalar],

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from linegraph.algebra.scalar import Scalar
     from linegraph.identification.regressor import Columns
     from linegraph.kinematics.links import KinematicTree
-    from linegraph.pipeline import Derivation
+    from linegraph.numeric.derived import Derived
 
 LARGEST = 16
 """Sums with larger factors would lose digits."""
@@ -50,7 +50,7 @@ class Tie(NamedTuple):
         return products + len(self.terms) - 1 <= COSTS[self.moment]
 
 
-def ties(derivation: Derivation, tree: KinematicTree, *, folded: bool) -> list[Tie]:
+def ties(derivation: Derived, tree: KinematicTree, *, folded: bool) -> list[Tie]:
     """The ties of all links beyond another one, inner links first.
 
     Args:

@@ -17,6 +17,7 @@ from linegraph.errors import ModelError
 from linegraph.kinematics.links import KinematicTree, Link, Seat, mass_center, resolved
 from linegraph.kinematics.state_layout import Place
 from linegraph.kinematics.working_frames import DUST, shortened
+from linegraph.model.terminal_graphs import terminals_of
 from linegraph.spatial import vector
 from linegraph.spatial.inertia import NO_MOMENTS, carried
 from linegraph.spatial.placement import Placement, compose
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from linegraph.algebra.scalar import Scalar
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
     from linegraph.spatial.inertia import Moments
     from linegraph.spatial.vector import Vector
 
@@ -55,13 +56,13 @@ class NamedFrame(NamedTuple):
     name: str
 
 
-def require_frame(model: Model, frame: str) -> None:
+def require_frame(model: System, frame: str) -> None:
     """Refuse a name that is neither a body nor a frame of one.
 
     Raises:
         ModelError: says what is like it.
     """
-    known = [name for name, (body, _) in model.terminals().items() if body in model.bodies]
+    known = [name for name, (body, _) in terminals_of(model).items() if body in model.bodies]
     body = frame.removesuffix(f".{MASS_CENTER}")
     if frame not in known and (body == frame or body not in model.bodies):
         raise ModelError(
@@ -70,7 +71,7 @@ def require_frame(model: Model, frame: str) -> None:
 
 
 def seat_of(
-    model: Model, tree: KinematicTree, resolve: Callable[[Any], Scalar], frame: str
+    model: System, tree: KinematicTree, resolve: Callable[[Any], Scalar], frame: str
 ) -> Seat:
     """The link that carries a frame, -1 for ground, and where it is there.
 
@@ -80,7 +81,7 @@ def seat_of(
         resolve: from model values to scalars.
         frame: ``body``, ``body.frame`` or ``body.mass_center``.
     """
-    terminals = model.terminals()
+    terminals = terminals_of(model)
     if frame in terminals:
         body, placement = terminals[frame]
         x, y, z = (resolved(row, resolve) for row in placement.rotation)

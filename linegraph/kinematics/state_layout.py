@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from linegraph.components.joints import Joint
     from linegraph.formulation.formulate import Formulation
     from linegraph.formulation.planarity import Angle
-    from linegraph.model.builder import Model
     from linegraph.model.coupling import Coupling
+    from linegraph.model.system import System
     from linegraph.networks import Network
 
 NOT_SMOOTH = "has no finite value, rate and acceleration"
@@ -104,7 +104,7 @@ class Layout:
 
 
 def layout_of(
-    model: Model, formulation: Formulation, algebra: Algebra, parameters: Mapping[str, Scalar]
+    model: System, formulation: Formulation, algebra: Algebra, parameters: Mapping[str, Scalar]
 ) -> Layout:
     """Number the coordinates and inputs of a model.
 
@@ -146,7 +146,7 @@ def _add_states(layout: Layout, network: Network) -> None:
 
 
 def _add_rates(
-    layout: Layout, model: Model, algebra: Algebra, declared: Input, formulation: Formulation
+    layout: Layout, model: System, algebra: Algebra, declared: Input, formulation: Formulation
 ) -> None:
     """New inputs for the derivatives of a named one, as far as a network needs them."""
     name, unit = declared.name, declared.unit or "1"
@@ -232,7 +232,7 @@ def _input(layout: Layout, algebra: Algebra, quantity: Quantity) -> Scalar:
     return algebra.symbol("u", len(layout.inputs) - 1)
 
 
-def _time(model: Model, algebra: Algebra, parameters: Mapping[str, Scalar]) -> dict[str, Scalar]:
+def _time(model: System, algebra: Algebra, parameters: Mapping[str, Scalar]) -> dict[str, Scalar]:
     """What a prescribed motion may depend on, as jets: parameters, which are constant, and the time."""
     values: dict[str, Scalar] = {name: lifted(value) for name, value in parameters.items()}
     if model.depends_on_time:
@@ -326,7 +326,7 @@ def _from_inputs(layout: Layout, algebra: Algebra, quantity: Quantity) -> Jet:
 
 def _couple(
     layout: Layout,
-    model: Model,
+    model: System,
     name: str,
     followers: Mapping[str, Coupling],
     algebra: Algebra,

@@ -21,6 +21,7 @@ from linegraph.kinematics.links import (
     resolved,
 )
 from linegraph.kinematics.state_layout import Layout, layout_of
+from linegraph.model.terminal_graphs import terminals_of
 from linegraph.spatial.inertia import NO_MOMENTS, joined
 from linegraph.spatial.placement import Placement, compose, inverse
 from linegraph.spatial.rotation import IDENTITY_MATRIX, Rotation, rotation_of
@@ -34,13 +35,13 @@ if TYPE_CHECKING:
     from linegraph.components.joints import Joint
     from linegraph.formulation.formulate import Formulation
     from linegraph.graph.forest import Step
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
 
 _ALIGNED = Placement(ZERO, IDENTITY_MATRIX)
 
 
 def kinematic_tree(
-    model: Model, formulation: Formulation, algebra: Algebra, parameters: Mapping[str, Scalar]
+    model: System, formulation: Formulation, algebra: Algebra, parameters: Mapping[str, Scalar]
 ) -> KinematicTree:
     """Walk the tree from ground outward and fold all that is constant into links.
 
@@ -56,7 +57,7 @@ class _Walk:
 
     def __init__(
         self,
-        model: Model,
+        model: System,
         formulation: Formulation,
         layout: Layout,
         algebra: Algebra,
@@ -68,7 +69,7 @@ class _Walk:
         self._algebra = algebra
         self._resolve = resolver(algebra, parameters)
         self._joints = {joint.name: joint for joint in model.joints}
-        self._terminals = model.terminals()
+        self._terminals = terminals_of(model)
         self._links: list[Link] = []
         self._where = {GROUND: (-1, Placement(ZERO, IDENTITY_MATRIX))}
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import ChainMap
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from linegraph.components.body import GROUND, MASS_CENTER, Body, inertia_of, unit
 from linegraph.components.constraints import Blade, Constraint, Driver, Rod, Rolling, aligned
@@ -26,24 +26,16 @@ from linegraph.components.joints import (
 )
 from linegraph.components.parameters import Input, Parameter, is_number, names_in
 from linegraph.components.scalar import Words
-from linegraph.components.scalar.forces import forces_of
 from linegraph.components.validation import finite, plain, require_new, require_symbols, vector
 from linegraph.errors import ModelError
+from linegraph.model.body_handle import BodyHandle, Force, Kind, Limit
 from linegraph.model.bounds import Bounded
-from linegraph.model.builder_words import (
-    BodyHandle,
-    Kind,
-    Limit,
-    Shown,
-    Terminal,
-    adds,
-    applies,
-    constrains,
-)
+from linegraph.model.builder_words import Shown, Terminal, adds, applies, constrains
 from linegraph.model.choices import Choices, chosen
 from linegraph.model.coupling import Coupling
 from linegraph.model.macros import add_basement, add_rotor, followers_at, locked
 from linegraph.model.outputs import Output
+from linegraph.model.system import System, frozen, settled
 from linegraph.model.terminal_graphs import system_graph, terminals_of
 from linegraph.spatial.vector import ZERO, Vector
 
@@ -55,8 +47,6 @@ if TYPE_CHECKING:
 
 STANDARD_GRAVITY: Vector = (0, 0, -9.81)
 SNAP = 1e-11
-
-Acting = TypeVar("Acting", Element, Load)
 
 
 class Model(Shown, Words, Bounded):
@@ -189,7 +179,7 @@ class Model(Shown, Words, Bounded):
     @property
     def elements(self) -> tuple[Element | Load, ...]:
         """The same, and what the networks' edges in mechanics exert."""
-        return (*self._elements.values(), *forces_of(self.components))
+        return self.system().elements
 
     @property
     def constraints(self) -> tuple[Constraint, ...]:
@@ -204,11 +194,7 @@ class Model(Shown, Words, Bounded):
     @property
     def depends_on_time(self) -> bool:
         """Whether a prescribed motion or a law names the time t."""
-        values = [value for joint in self.joints for value in joint.prescribed_values()]
-        acting = (*self._elements.values(), *self._constraints.values(), *self.components)
-        values += [output.value for output in self.outputs]
-        values += [value for component in acting for value in component.values()]
-        return any("t" in names_in(value) for value in values)
+        return self.system().depends_on_time
 
     def body(
         self,
@@ -288,7 +274,7 @@ class Model(Shown, Words, Bounded):
         load = Load(name, str(at), vector(force, who), vector(torque, who), axes)
         return self.add_element(load)
 
-    def add_element(self, element: Acting) -> Acting:
+    def add_element(self, element: Force) -> Force:
         """Add a force element made elsewhere; ``model.spring(...)`` and its siblings are friendlier.
 
         Raises:
@@ -397,9 +383,35 @@ class Model(Shown, Words, Bounded):
         for follower, at in followers_at(self, joint, value):
             self.lock(follower, at)
 
+    def system(self) -> System:
+        """What has been said until now, as a frozen system: what is said later does not reach it."""
+        return System(
+            name=self.name,
+            gravity=settled(self.gravity),
+            about=self.about,
+            snap=self.snap,
+            bodies=frozen(self.bodies),
+            ground_frames=frozen(self.ground_frames),
+            joints=settled(self.joints),
+            couplings=settled(self.couplings),
+            force_elements=settled(self.force_elements),
+            constraints=settled(self.constraints),
+            relations=settled(self.relations),
+            components=settled(self.components),
+            domains=frozen(self.domains),
+            parameters=frozen(self.parameters),
+            inputs=settled(self.inputs),
+            outputs=settled(tuple(self.outputs)),
+            choices=settled(self.choices),
+            bounds=settled(self.bounds),
+            warnings=tuple(self.warnings),
+            source=self.source,
+            places=frozen(self.places),
+        )
+
     def terminals(self) -> dict[str, tuple[str, Placement]]:
         """Every terminal a joint may be connected to: its body and its placement there."""
-        return terminals_of(self)
+        return terminals_of(self.system())
 
     def graph(self) -> SystemGraph:
         """The system graph: the union of all terminal graphs.
@@ -407,4 +419,4 @@ class Model(Shown, Words, Bounded):
         Raises:
             ModelError: a component names a terminal that does not exist, or connects a body to itself.
         """
-        return system_graph(self)
+        return system_graph(self.system())

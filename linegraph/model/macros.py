@@ -8,6 +8,7 @@ from linegraph.algebra.formula import Formula
 from linegraph.components.body import GROUND
 from linegraph.components.joints import Compound, Fixed, Revolute
 from linegraph.components.joints.base import BY_INPUT
+from linegraph.components.joints.holding import moved
 from linegraph.components.validation import finite, nearest, vector
 from linegraph.errors import ModelError
 from linegraph.spatial.vector import ZERO
@@ -15,15 +16,14 @@ from linegraph.spatial.vector import ZERO
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from linegraph.model.builder import Model
-    from linegraph.model.builder_words import BodyHandle
+    from linegraph.model.body_handle import BodyHandle, Builder
 
 BASEMENT = "basement"
 _AXES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
 _SLIDES = tuple(("prismatic", axis, {"name": name}) for name, axis in _AXES.items())
 
 
-def add_rotor(model: Model, name: str, joint: str, inertia: Any, ratio: Any) -> BodyHandle:
+def add_rotor(model: Builder, name: str, joint: str, inertia: Any, ratio: Any) -> BodyHandle:
     """A body with inertia about a revolute joint's axis alone, in the joint's tail, turning `ratio` times.
 
     Raises:
@@ -41,7 +41,7 @@ def add_rotor(model: Model, name: str, joint: str, inertia: Any, ratio: Any) -> 
     return handle
 
 
-def add_basement(model: Model, position: Any, rotation: Any) -> BodyHandle:
+def add_basement(model: Builder, position: Any, rotation: Any) -> BodyHandle:
     """A massless body on a compound joint whose motion is prescribed.
 
     Raises:
@@ -81,14 +81,12 @@ def _product(inertia: Any, a: Any, b: Any) -> Any:
     return f"({inertia})*({factor})" if isinstance(inertia, str) else inertia * factor
 
 
-def locked(model: Model, name: str, value: float) -> Fixed:
+def locked(model: Builder, name: str, value: float) -> Fixed:
     """The fixed joint that a joint of one freedom is at a value: at its tail frame, moved.
 
     Raises:
         ModelError: no such joint, or it has no coordinate or more than one.
     """
-    from linegraph.components.joints.holding import moved
-
     who = f'joint "{name}"'
     joints = {joint.name: joint for joint in model.joints}
     if name not in joints:
@@ -106,7 +104,7 @@ def locked(model: Model, name: str, value: float) -> Fixed:
     return Fixed(name, (terminal, head))
 
 
-def followers_at(model: Model, name: str, value: float) -> list[tuple[str, float]]:
+def followers_at(model: Builder, name: str, value: float) -> list[tuple[str, float]]:
     """The joints coupled to a joint that is locked, and where that leaves them.
 
     Raises:

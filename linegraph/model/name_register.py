@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from linegraph.components.constraints import Constraint
     from linegraph.components.forces import Element
     from linegraph.components.joints import Joint
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
 
 OWN = {"x": "displacement", "v": "rate"}
 """What an element's laws call its own across variables."""
@@ -46,7 +46,7 @@ class Claim(NamedTuple):
     what: str
 
 
-def declared(model: Model) -> list[Claim]:
+def declared(model: System) -> list[Claim]:
     """All names that a model declares, but for states of networks, which have to be derived."""
     found = [*map(parameter_claim, model.parameters)]
     found += [input_claim(given.name) for given in model.inputs]
@@ -140,7 +140,7 @@ def require_distinct(claims: Iterable[Claim], places: Mapping[str, int]) -> dict
     return owners
 
 
-def require_own(model: Model, owners: Mapping[str, Claim], places: Mapping[str, int]) -> None:
+def require_own(model: System, owners: Mapping[str, Claim], places: Mapping[str, int]) -> None:
     """Refuse laws of elements whose x or v could also mean something that the model declares.
 
     Raises:

@@ -16,13 +16,13 @@ from linegraph.spatial.rotation import IDENTITY_MATRIX
 from linegraph.spatial.vector import ZERO
 
 if TYPE_CHECKING:
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
 
 MECHANICAL = (TRANSLATION.name, ROTATION.name)
 Terminals = dict[str, tuple[str, Placement]]
 
 
-def terminals_of(model: Model) -> Terminals:
+def terminals_of(model: System) -> Terminals:
     """Every terminal of a model by name: its body and its placement there.
 
     Raises:
@@ -48,7 +48,7 @@ def terminals_of(model: Model) -> Terminals:
     return found
 
 
-def system_graph(model: Model) -> SystemGraph:
+def system_graph(model: System) -> SystemGraph:
     """Unite the terminal graphs of ground, bodies, joints, elements and loads.
 
     Raises:
@@ -68,7 +68,7 @@ def system_graph(model: Model) -> SystemGraph:
     return unite(graphs)
 
 
-def _ground_edges(model: Model) -> list[Edge]:
+def _ground_edges(model: System) -> list[Edge]:
     return [
         Edge(f"{GROUND}/arm.{frame}", GROUND, domain, GROUND, f"{GROUND}.{frame}")
         for domain in MECHANICAL
@@ -76,7 +76,7 @@ def _ground_edges(model: Model) -> list[Edge]:
     ]
 
 
-def _element_edges(model: Model, element: Element | Load, terminals: Terminals) -> list[Edge]:
+def _element_edges(model: System, element: Element | Load, terminals: Terminals) -> list[Edge]:
     """An element in a joint is parallel to it; a load runs from ground to the point it acts on.
 
     Raises:

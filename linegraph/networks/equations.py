@@ -32,13 +32,13 @@ if TYPE_CHECKING:
     from linegraph.algebra.scalar import Scalar
     from linegraph.components.domains import Domain
     from linegraph.components.scalar.branches import Branch
-    from linegraph.model.builder import Model
-    from linegraph.networks.laws import Laws, Store
+    from linegraph.model.system import System
+    from linegraph.networks.law_records import Laws, Store
     from linegraph.networks.selection import Selection
     from linegraph.networks.static import Statics
 
 
-def network_of(model: Model) -> Network | None:
+def network_of(model: System) -> Network | None:
     """Derive the network of a model; None if it has no components.
 
     Raises:
@@ -56,7 +56,7 @@ def network_of(model: Model) -> Network | None:
     return _Derivation(model, branches, laws, selection, statics).network()
 
 
-def _require_places(model: Model, branches: Sequence[Branch]) -> None:
+def _require_places(model: System, branches: Sequence[Branch]) -> None:
     """Refuse edges in mechanics of the wrong kind: 1-D rotation at a joint that slides, and the like."""
     units = {joint.name: [q.unit for q in joint.velocities()] for joint in model.joints}
     for branch in branches:
@@ -78,7 +78,7 @@ class _Derivation:
 
     def __init__(
         self,
-        model: Model,
+        model: System,
         branches: Sequence[Branch],
         laws: Laws,
         selection: Selection,

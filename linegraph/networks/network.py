@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from linegraph.graph.forest import Topology
     from linegraph.ir.dag import Dag
     from linegraph.ir.program import Quantity
-    from linegraph.networks.laws import Laws
+    from linegraph.networks.law_records import Laws
 
 INPUTS = ("u", "du", "ddu")
 RATE, SHAFT_RATE = "dz", "dw"

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from linegraph.components.scalar.base import Component
     from linegraph.components.scalar.branches import Branch
     from linegraph.graph.multigraph import Projection
-    from linegraph.networks.laws import Laws, Static, Store
+    from linegraph.networks.law_records import Laws, Static, Store
 
 MOST_NAMED = 8
 

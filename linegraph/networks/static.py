@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from linegraph.algebra.differentiation import Calculus, Symbol
     from linegraph.algebra.scalar import Scalar
     from linegraph.components.scalar.branches import Branch
-    from linegraph.networks.laws import Laws, Static
+    from linegraph.networks.law_records import Laws, Static
     from linegraph.networks.selection import Selection
 
 DUAL, LOOP, EASE = "d", "loop", "ease"

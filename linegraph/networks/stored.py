@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from linegraph.algebra.scalar import Scalar
     from linegraph.components.scalar.base import Component
     from linegraph.components.scalar.branches import Branch
-    from linegraph.networks.laws import At, Laws
+    from linegraph.networks.law_records import Laws
+    from linegraph.networks.variables import At
 
 TRANSDUCERS = {
     "capacitor": "variable_capacitor",

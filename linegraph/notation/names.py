@@ -19,8 +19,8 @@ from linegraph.notation.tree import (
 from linegraph.notation.writing import SUBSCRIPTS
 
 if TYPE_CHECKING:
-    from linegraph.model.builder import Model
-    from linegraph.pipeline import Derivation
+    from linegraph.model.system import System
+    from linegraph.numeric.derived import Derived
 
 _LETTER_NAMES = (
     *("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa"),
@@ -111,10 +111,10 @@ def guessed(text: str) -> Name:
     return replace(name, role=roles.get(name.letter, LENGTH if len(name.letter) == 1 else OTHER))
 
 
-def names_of(derivation: Derivation) -> dict[str, Name]:
+def names_of(derivation: Derived) -> dict[str, Name]:
     """The look of every symbol of a derivation; two may look alike yet."""
     found: dict[str, Name] = {}
-    tree, model = derivation.structure, derivation.model
+    tree, model = derivation.structure, derivation.system
     for place, parameter in enumerate(model.parameters.values()):
         unit = parameter.unit
         role = MASS if "kg" in unit or "N" in unit else LENGTH
@@ -147,7 +147,7 @@ def names_of(derivation: Derivation) -> dict[str, Name]:
     return _multipliers(derivation, found)
 
 
-def _dependent(model: Model, owners: dict[str, tuple[str, str]], found: dict[str, Name]) -> None:
+def _dependent(model: System, owners: dict[str, tuple[str, str]], found: dict[str, Name]) -> None:
     """Coordinates of joints that are chords or follow others: no state, but they are spoken of."""
     for joint in model.joints:
         own = {quantity.name for quantity in joint.positions()}
@@ -175,7 +175,7 @@ def _coordinate(name: str, owners: dict[str, tuple[str, str]]) -> Name:
     return own if len(own.letter) == 1 or len(name) <= LONGEST_DOTTED else Name("q", (name,))
 
 
-def _multipliers(derivation: Derivation, found: dict[str, Name]) -> dict[str, Name]:
+def _multipliers(derivation: Derived, found: dict[str, Name]) -> dict[str, Name]:
     """Those of joints by their component and which reaction it is, all others by their name."""
     tree: Any = derivation.structure
     names: list[tuple[str, tuple[str, ...]]] = []

@@ -23,7 +23,7 @@ from linegraph.notation.latex import Latex
 from linegraph.notation.tree import Raw
 
 if TYPE_CHECKING:
-    from linegraph.notation import Notation
+    from linegraph.notation.notation import Notation
 
 OURS = (Add, Mul, Pow, Symbol, Rational, Function, Derivative, Equality, MatrixBase)
 

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     import random
     from collections.abc import Mapping, Sequence
 
+    from linegraph.kinematics.formulated import Formulated
     from linegraph.numeric.reference import Numeric
-    from linegraph.pipeline import Derivation
 
     Array = Any
 
@@ -60,7 +60,7 @@ class Assembly:
 
 
 def assemble(
-    derivation: Derivation,
+    derivation: Formulated,
     hold: Mapping[str, float] | None = None,
     seed: int = 0,
     start: Sequence[float] | None = None,
@@ -81,18 +81,18 @@ def assemble(
 
 
 def consistent(
-    derivation: Derivation, numeric: Numeric, draw: random.Random
+    derivation: Formulated, near: Sequence[float], numeric: Numeric, draw: random.Random
 ) -> tuple[list[float], list[float]]:
     """A random state that satisfies the constraints, near the assembly.
 
     Args:
         derivation: a model with constraints.
+        near: where its loops are closed.
         numeric: it at the time and for the inputs and parameters wanted.
         draw: where randomness comes from.
     """
     search = Search(derivation, {}, draw.randrange(2**31), numeric)
-    start = derivation.assembled.q
-    near = list(start)
+    near = list(near)
     search.close(near)
     beside = search.beside(near, 0.2) or search.beside(near, 0.05)
     q = near if beside is None else beside

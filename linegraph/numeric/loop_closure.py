@@ -11,15 +11,16 @@ from linegraph.dynamics.chords import equations
 from linegraph.dynamics.circuit_lengths import of_rows, pure
 from linegraph.errors import ModelError
 from linegraph.kinematics.state_layout import NOT_SMOOTH, coordinates
+from linegraph.numeric.reference import over_floats
 from linegraph.tolerance import CLOSED, DEPENDENT
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from linegraph.dynamics.chords import Chords, Equation
+    from linegraph.kinematics.formulated import Formulated
     from linegraph.kinematics.links import Closure, KinematicTree
     from linegraph.numeric.reference import Numeric
-    from linegraph.pipeline import Derivation
 
 TRIES = 24
 STEPS = 50
@@ -45,7 +46,7 @@ class Search:
 
     def __init__(
         self,
-        derivation: Derivation,
+        derivation: Formulated,
         hold: dict[str, float],
         seed: int,
         numeric: Numeric | None = None,
@@ -309,15 +310,15 @@ def least(J: Any, right: Any) -> Any:
     return along[kept].T @ ((left[:, kept].T @ right) / values[kept])
 
 
-def at_some_time(derivation: Derivation) -> Numeric:
+def at_some_time(derivation: Formulated) -> Numeric:
     """The numeric reference at t = 0, or later where motions have no derivatives there."""
     try:
-        return derivation.numeric()
+        return over_floats(derivation)
     except ModelError as error:
-        bounds = derivation.model.bounds
+        bounds = derivation.system.bounds
         if not error.problem.endswith(NOT_SMOOTH) and bounds.t is None:
             raise
-        return derivation.numeric(t=bounds.sometime)
+        return over_floats(derivation, t=bounds.sometime)
 
 
 def quoted(names: Sequence[str] | Mapping[str, Any]) -> str:

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from linegraph.algebra.protocol import Floats
-from linegraph.components.parameters import resolver
+from linegraph.components.parameters import Parameter, resolver, valued
 from linegraph.dynamics import orthogonality
 from linegraph.dynamics.applied_forces import Applied, applied
 from linegraph.dynamics.chords import Chords, equations
@@ -20,6 +20,7 @@ from linegraph.dynamics.whole_system import (
     united_inverse_dynamics,
     united_mass_matrix,
 )
+from linegraph.errors import ModelError
 from linegraph.kinematics.arms import Arm, arms, coordinate_rates
 
 if TYPE_CHECKING:
@@ -27,9 +28,9 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.scalar import Scalar
     from linegraph.dynamics.network_state import Exchange
+    from linegraph.kinematics.formulated import Formulated
     from linegraph.kinematics.links import KinematicTree
-    from linegraph.model.builder import Model
-    from linegraph.pipeline import Derivation
+    from linegraph.model.system import System
 
 
 @dataclass(frozen=True)
@@ -45,10 +46,10 @@ class Numeric:
     """
 
     tree: KinematicTree
-    model: Model | None = None
+    model: System | None = None
     algebra: Floats = field(default_factory=Floats)
     parameters: Mapping[str, Scalar] = field(default_factory=dict)
-    derivation: Derivation | None = None
+    derivation: Formulated | None = None
 
     @property
     def t(self) -> float:
@@ -59,7 +60,7 @@ class Numeric:
         """The same at another time."""
         if self.derivation is None:
             return self
-        return self.derivation.numeric(self.parameters, t, self.algebra.arguments["u"])
+        return over_floats(self.derivation, self.parameters, t, self.algebra.arguments["u"])
 
     @property
     def resolve(self) -> Callable[[Any], Scalar]:
@@ -156,3 +157,37 @@ class Numeric:
 
     def _arms(self, q: Sequence[float], v: Sequence[float]) -> list[Arm]:
         return arms(self.tree, self.algebra, q, v)
+
+
+def over_floats(
+    formulated: Formulated,
+    parameters: Mapping[str, float] | None = None,
+    t: float = 0.0,
+    u: Sequence[float] | None = None,
+) -> Numeric:
+    """A derivation over floats, at a time and for inputs.
+
+    Args:
+        formulated: the system and its trees.
+        parameters: values in place of the system's own.
+        t: the time (s).
+        u: the inputs; all zero if left out.
+
+    Raises:
+        ModelError: a parameter has no value, or there are more or fewer inputs.
+    """
+    chosen = parameters or {}
+    count = len(formulated.structure.inputs)
+    inputs = [0.0] * count if u is None else list(u)
+    if len(inputs) != count:
+        raise ModelError("u", f"{count} inputs are needed, got {len(inputs)}")
+
+    def given(parameter: Parameter) -> float:
+        value = chosen.get(parameter.name, parameter.value)
+        if value is None:
+            raise ModelError(f'parameter "{parameter.name}"', "has no value")
+        return float(value)
+
+    algebra = Floats(t=t, u=inputs)
+    values = valued(formulated.system.parameters.values(), algebra, given)
+    return Numeric(formulated.tree(algebra, values), formulated.system, algebra, values, formulated)

@@ -9,10 +9,10 @@ from linegraph.kinematics.frame_trees import NamedFrame, require_frame
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
 
 
-def named_frames(model: Model, frames: Iterable[str]) -> list[NamedFrame]:
+def named_frames(model: System, frames: Iterable[str]) -> list[NamedFrame]:
     """Bodies and ``body.frame`` with their identifiers.
 
     Raises:

@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from linegraph.ir.dag import Node
-from linegraph.ir.program import Argument, Check, Listing, Program, Quantity, Result, Routine, reads
+from linegraph.ir.program import Argument, Check, Listing, Program, Quantity, Result, Routine
 from linegraph.ir.statuses import NO_LOOP_SOLUTION, SINGULAR_NETWORK
+from linegraph.programs.workspace import LOOP_FUNCTION
 
 if TYPE_CHECKING:
     from linegraph.kinematics.links import KinematicTree
     from linegraph.programs.workspace import Functions
-
-LOOP_FUNCTION = "algebraic_loop"
 
 
 def algebraic_loop(f: Functions) -> tuple[Program | Routine, ...]:
@@ -33,7 +32,7 @@ def algebraic_loop(f: Functions) -> tuple[Program | Routine, ...]:
     equations = f.program(
         "loop_equations",
         "Equations of the network's algebraic loop, for given unknowns and with resistances at its laws.",
-        (*loop_arguments(f), "ease"),
+        (*f.loop_arguments, "ease"),
         results,
     )
     given = tuple(a for a in equations.arguments if a.name not in ("loop", "ease"))
@@ -59,15 +58,6 @@ def checks(f: Functions) -> tuple[Check, ...]:
         f.dag.function("abs", f.exchange.still(pivot)) for pivot in f.exchange.network.pivots
     )
     return tuple(Check(size, 0, *SINGULAR_NETWORK) for size in sizes if isinstance(size, Node))
-
-
-def loop_arguments(f: Functions) -> tuple[str, ...]:
-    """What the algebraic loop depends on: always the state, inputs where they are in it."""
-    assert f.exchange is not None
-    network = f.exchange.network
-    rows = (*network.eased, *(e for row in network.eased_jacobian for e in row))
-    results = (Result("r", (), tuple(f.exchange.still(r) for r in rows), ""),)
-    return ("q", "v", "u", "loop") if reads("u", results) else ("q", "v", "loop")
 
 
 def remarks(f: Functions) -> tuple[str, ...]:

@@ -31,14 +31,14 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.scalar import Scalar
     from linegraph.kinematics.frame_trees import NamedFrame
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
     from linegraph.networks import Network
-    from linegraph.pipeline import Derivation
+    from linegraph.numeric.derived import Derived
     from linegraph.programs.division import Made
 
 
 def module_of(
-    derivation: Derivation,
+    derivation: Derived,
     name: str,
     *,
     folded: bool,
@@ -91,7 +91,7 @@ def module_of(
         velocities=tree.velocities,
         inputs=tree.inputs,
         parameters=() if folded else parameters,
-        time=derivation.model.depends_on_time,
+        time=derivation.system.depends_on_time,
         programs=programs,
         listings=(
             *whole,
@@ -109,7 +109,7 @@ def module_of(
     )
 
 
-def _require_made(derivation: Derivation, keys: Iterable[str], made: Mapping[str, Made]) -> None:
+def _require_made(derivation: Derived, keys: Iterable[str], made: Mapping[str, Made]) -> None:
     """Refuse what is asked for by name and is not made.
 
     Raises:
@@ -275,7 +275,7 @@ def _coordinate_rates(f: Functions) -> Program:
     return f.program("coordinate_rates", about, ("q", "v"), (result,))
 
 
-def energy_remark(model: Model, network: Network | None) -> str:
+def energy_remark(model: System, network: Network | None) -> str:
     """Which elements and components store energy that is not known, and why."""
     found = [f"{who} ({why})" for who, why in unknown(model).items()]
     if network is not None:
@@ -357,10 +357,10 @@ ON_REQUEST = (
 """Emitted only where they are asked for."""
 
 
-def parameters_of(derivation: Derivation) -> tuple[Quantity, ...]:
+def parameters_of(derivation: Derived) -> tuple[Quantity, ...]:
     """The independent parameters; derived ones are computed from them."""
     found = []
-    for p in derivation.model.parameters.values():
+    for p in derivation.system.parameters.values():
         if p.derived:
             continue
         if p.value is None:

@@ -13,13 +13,16 @@ from linegraph.components.joints import Compound
 from linegraph.errors import ModelError
 from linegraph.ir.program import Program
 from linegraph.model.choices import ABSOLUTE, ABSOLUTE_ANGLE
-from linegraph.pipeline import Derivation, derive, placed, variant
+from linegraph.model.system import placed, variant
+from linegraph.numeric.derived import Derived
+from linegraph.pipeline import derived
 from linegraph.programs.register import module_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from linegraph.model.builder import Model
+    from linegraph.model.system import System
 
 MOST = 24
 """Candidates that are looked at."""
@@ -57,23 +60,24 @@ class Candidate:
         return f"tree = [{branches}]" if self.cut else "the only tree of joints"
 
 
-def candidates(model: Model, tell: Callable[[str], None] | None = None) -> list[Candidate]:
+def candidates(model: Model | System, tell: Callable[[str], None] | None = None) -> list[Candidate]:
     """The sensible trees, cheapest first; of equal cost the one the model has, then as found.
 
     Raises:
         ModelError: the model itself cannot be derived, or there is no equation of motion in any of them.
     """
-    own = derive(model)
+    system = model.system()
+    own = derived(system, Derived)
     found: dict[tuple[Any, ...], Candidate] = {}
     refused: ModelError | None = None
-    for choices in _choices(model, own):
+    for choices in _choices(system, own):
         if len(found) == MOST:
             break
         if tell is not None:
             tell(f"tree {len(found) + 1}")
-        twin = variant(model, **choices)
+        twin = variant(system, **choices)
         try:
-            derivation = own if _same(own, choices) else derive(twin)
+            derivation = own if _same(own, choices) else derived(twin, Derived)
             tree = derivation.formulation
             key = (tree.joints, tree.absolute, tuple(tree.level))
             if key not in found:
@@ -82,23 +86,23 @@ def candidates(model: Model, tell: Callable[[str], None] | None = None) -> list[
             # a joint that cannot be cut, a tree that cannot be assembled, a law that needs a coordinate
             refused = refused or error
     if refused is not None and not found:
-        raise placed(refused, model)
+        raise placed(refused, system)
     return sorted(found.values(), key=lambda c: (c.operations, c.coordinates, not c.chosen))
 
 
-def _same(own: Derivation, choices: dict[str, Any]) -> bool:
+def _same(own: Derived, choices: dict[str, Any]) -> bool:
     """Whether choices are those the model is derived with."""
     if "coordinates" in choices or own.formulation.absolute or own.formulation.level:
         return False
     return set(choices["tree"]) == set(_moving(own))
 
 
-def _choices(model: Model, own: Derivation) -> Iterator[dict[str, Any]]:
+def _choices(system: System, own: Derived) -> Iterator[dict[str, Any]]:
     """The automatic tree, its neighbours, and the trees of inertia edges."""
-    base = own if not (own.formulation.absolute or own.formulation.level) else _joints_only(model)
+    base = own if not (own.formulation.absolute or own.formulation.level) else _joints_only(system)
     branches = _moving(base)
     yield {"tree": branches}
-    compound = {joint.name for joint in model.joints if isinstance(joint, Compound)}
+    compound = {joint.name for joint in system.joints if isinstance(joint, Compound)}
     for chord in base.formulation.chords:
         for other in base.circuit_of(chord)[:-1]:
             if other in branches and other not in compound:
@@ -107,17 +111,17 @@ def _choices(model: Model, own: Derivation) -> Iterator[dict[str, Any]]:
     yield {"coordinates": ABSOLUTE}
 
 
-def _joints_only(model: Model) -> Derivation:
-    return derive(variant(model))
+def _joints_only(system: System) -> Derived:
+    return derived(variant(system), Derived)
 
 
-def _moving(derivation: Derivation) -> tuple[str, ...]:
+def _moving(derivation: Derived) -> tuple[str, ...]:
     """The joints that are branches, in declared order."""
-    joints = derivation.model.joints
+    joints = derivation.system.joints
     return tuple(j.name for j in joints if j.name in derivation.formulation.joints)
 
 
-def _judged(derivation: Derivation, choices: dict[str, Any], chosen: bool) -> Candidate:
+def _judged(derivation: Derived, choices: dict[str, Any], chosen: bool) -> Candidate:
     """The cost of a tree."""
     module = module_of(
         derivation,
@@ -131,7 +135,7 @@ def _judged(derivation: Derivation, choices: dict[str, Any], chosen: bool) -> Ca
     whole = programs.get("constrained_equations", programs["equations"])
     tree = derivation.structure
     held = (c.component.name for c in tree.closures if c.restrictions or c.drive)
-    others = (c.name for c in derivation.model.constraints)
+    others = (c.name for c in derivation.system.constraints)
     cut = tuple(dict.fromkeys([*held, *others]))
     count = len(derivation.assembled.unique) if tree.closed else 0
     return Candidate(choices, cut, len(tree.velocities), count, whole.operations, chosen)

@@ -33,7 +33,6 @@ from linegraph.ir.program import (
 )
 from linegraph.kinematics.arms import Arm, arms, coordinate_rates
 from linegraph.kinematics.working_frames import shortened
-from linegraph.programs import networks as network_programs
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -41,7 +40,7 @@ if TYPE_CHECKING:
     from linegraph.algebra.scalar import Scalar
     from linegraph.dynamics.network_state import Exchange
     from linegraph.kinematics.frame_trees import NamedFrame
-    from linegraph.pipeline import Derivation
+    from linegraph.numeric.derived import Derived
 
 ORDER = ("q", "v", "u", "a", "lam", "loop", "ease")
 """The order of a function's arguments, after parameters and time."""
@@ -59,12 +58,16 @@ ARGUMENTS = {
 }
 
 
+LOOP_FUNCTION = "algebraic_loop"
+"""The function that solves the algebraic loop of a network."""
+
+
 class Functions:
     """What several functions share: the DAG, the tree over it, M and h."""
 
     def __init__(
         self,
-        derivation: Derivation,
+        derivation: Derived,
         folded: bool,
         frames: Iterable[NamedFrame] = (),
         asked: Iterable[str] = (),
@@ -81,11 +84,11 @@ class Functions:
         self.asked = frozenset(asked)
         self.dag = Dag()
         self.derivation = derivation
-        self.model = derivation.model
+        self.model = derivation.system
         self.head = ["p"] if not folded else []
-        self.head += ["t"] if derivation.model.depends_on_time else []
+        self.head += ["t"] if derivation.system.depends_on_time else []
         self.values = valued(
-            derivation.model.parameters.values(),
+            derivation.system.parameters.values(),
             self.dag,
             lambda p: p.value if folded else self.dag.symbol("p", p.name),
         )
@@ -130,7 +133,7 @@ class Functions:
         """
         loop = reads("loop", results) and "loop" not in arguments
         if loop:
-            needed = network_programs.loop_arguments(self)[:-1]
+            needed = self.loop_arguments[:-1]
             arguments = (*(a for a in needed if a not in arguments), *arguments)
         for more in ("v", "u"):
             if more not in arguments and reads(more, results):
@@ -139,13 +142,22 @@ class Functions:
         if loop:
             solved = Argument("loop", self.sizes["loop"], ARGUMENTS["loop"])
             given_names = (*self.head, *needed)
-            call = Call(network_programs.LOOP_FUNCTION, given_names, (solved,))
+            call = Call(LOOP_FUNCTION, given_names, (solved,))
             calls = (call, *calls)
         given = tuple(
             Argument(argument, self.sizes.get(argument), ARGUMENTS[argument])
             for argument in (*self.head, *arguments)
         )
         return assemble(name, about, given, results, checks, calls, status=status)
+
+    @cached_property
+    def loop_arguments(self) -> tuple[str, ...]:
+        """What the algebraic loop depends on: always the state, inputs where they are in it."""
+        assert self.exchange is not None
+        network = self.exchange.network
+        rows = (*network.eased, *(e for row in network.eased_jacobian for e in row))
+        results = (Result("r", (), tuple(self.exchange.still(r) for r in rows), ""),)
+        return ("q", "v", "u", "loop") if reads("u", results) else ("q", "v", "loop")
 
     @cached_property
     def passive(self) -> Applied:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from linegraph.pipeline import Derivation
+    from linegraph.derivation import Derivation
 
 FORMATS = {"text": ".txt", "markdown": ".md", "latex": ".tex", "html": ".html"}
 """What a report may be written in, and how its files end."""

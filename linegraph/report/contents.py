@@ -18,7 +18,7 @@ from linegraph.report.system import conventions, described
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from linegraph.pipeline import Derivation
+    from linegraph.derivation import Derivation
 
 
 SOURCE = re.compile(r"Derived from [^.]*\b[0-9a-f]{64}\.?")
@@ -52,9 +52,9 @@ def document(
         orthogonality(subject),
         *Forms(subject, tell).sections(),
     ]
-    title = f"Equations of motion of {derivation.model.name}"
+    title = f"Equations of motion of {derivation.system.name}"
     first = conventions(subject, any(map(rounded, formulas(tuple(sections)))))
-    about, source = _told(derivation.model.about)
+    about, source = _told(derivation.system.about)
     return Document(title, about, (first, *sections), source)
 
 

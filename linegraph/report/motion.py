@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from linegraph.components.body import MASS_CENTER
 from linegraph.errors import ModelError
 from linegraph.ir.program import Result, operations_of
+from linegraph.model.terminal_graphs import terminals_of
 from linegraph.notation.plain import Plain
 from linegraph.notation.tree import ZERO, Listed, Math, Name, total
 from linegraph.report.document import Block, Formulas, Row, said
@@ -39,7 +40,7 @@ def motion(subject: Subject) -> tuple[Block, ...]:
     for body in subject.model.bodies:
         if body in derivation.formulation.absolute:
             paths[body] = [(False, vector("ω", f"{body}/inertia"))]
-    owner = {vertex: body for vertex, (body, _) in subject.model.terminals().items()}
+    owner = {vertex: body for vertex, (body, _) in terminals_of(subject.model).items()}
     owner |= {f"{body}.{MASS_CENTER}": body for body in subject.model.bodies}
     for step in derivation.formulation.rotation.walk:
         near, far = owner.get(step.near, "ground"), owner.get(step.far, "ground")

@@ -13,13 +13,13 @@ from linegraph.programs.loop_remarks import freedoms_text
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
+    from linegraph.derivation import Derivation
     from linegraph.graph.forest import Topology
     from linegraph.graph.multigraph import IntegerMatrix
     from linegraph.kinematics.links import KinematicTree
-    from linegraph.model.builder import Model
+    from linegraph.model.system import System
     from linegraph.networks import Network
     from linegraph.numeric.assembly import Assembly
-    from linegraph.pipeline import Derivation
 
 WIDEST_TABLE = 120
 """A matrix wider than this many characters is written row by row as sums."""
@@ -35,12 +35,12 @@ def show(derivation: Derivation, heading: Callable[[str], str] = str) -> str:
         heading: how to decorate a heading, e.g. in bold on a terminal.
     """
     tree = derivation.structure
-    mechanics = bool(derivation.model.bodies)
-    sections = [(f"model {derivation.model.name}", _summary(derivation, tree))]
+    mechanics = bool(derivation.system.bodies)
+    sections = [(f"model {derivation.system.name}", _summary(derivation, tree))]
     if mechanics:
-        sections += [("bodies", _bodies(derivation.model)), ("joints", _joints(derivation))]
-    if derivation.model.components:
-        sections.append(("components", _components(derivation.model)))
+        sections += [("bodies", _bodies(derivation.system)), ("joints", _joints(derivation))]
+    if derivation.system.components:
+        sections.append(("components", _components(derivation.system)))
     sections.append(("domains", _domains(derivation)))
     if mechanics:
         title = f"graph: edges tail -> head, {_likeness(derivation)}"
@@ -81,7 +81,7 @@ def _networks(network: Network) -> list[tuple[str, Lines]]:
     return sections
 
 
-def _components(model: Model) -> Lines:
+def _components(model: System) -> Lines:
     rows = [("component", "type", "edges")]
     for component in model.components:
         edges = []
@@ -131,7 +131,7 @@ def assembled(derivation: Derivation, found: Assembly) -> str:
 
 
 def _summary(derivation: Derivation, tree: KinematicTree) -> Lines:
-    graph, model = derivation.topology, derivation.model
+    graph, model = derivation.topology, derivation.system
     states = len(tree.velocities) - tree.layout.mechanical
     lines = [
         f"{len(tree.positions)} coordinates q, {len(tree.velocities)} velocities v"
@@ -152,7 +152,7 @@ def _summary(derivation: Derivation, tree: KinematicTree) -> Lines:
     return lines
 
 
-def _bodies(model: Model) -> Lines:
+def _bodies(model: System) -> Lines:
     rows = [("body", "mass / kg", "mass centre / m", "frames")]
     for body in model.bodies.values():
         center = (
@@ -163,7 +163,7 @@ def _bodies(model: Model) -> Lines:
 
 
 def _joints(derivation: Derivation) -> Lines:
-    model, chords = derivation.model, derivation.formulation.chords
+    model, chords = derivation.system, derivation.formulation.chords
     rows = [("joint", "type", "tail -> head", "axis", "remark")]
     coupled = {c.joint: c for c in model.couplings}
     for joint in model.joints:
@@ -180,7 +180,7 @@ def _joints(derivation: Derivation) -> Lines:
 def _domains(derivation: Derivation) -> Lines:
     rows = [("domain", "across", "through", "dimension")]
     for name in derivation.graph.domains:
-        domain = derivation.model.domains.get(name) or DOMAINS[name]
+        domain = derivation.system.domains.get(name) or DOMAINS[name]
         across, through = (f"{x.name} / ({x.symbol})" for x in (domain.across, domain.through))
         rows.append((name, across, through, str(domain.dimension)))
     return _table(rows)

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.components.domains import DOMAINS, ROTATION, TRANSLATION
 from linegraph.components.parameters import resolver
-from linegraph.notation import Notation
 from linegraph.notation.expressions import number
 from linegraph.notation.names import shaped
+from linegraph.notation.notation import Notation
 from linegraph.notation.tree import ZERO, Listed, Math, Name, total
 from linegraph.symbolic.simplification.numbers import plain
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from linegraph.components.domains import Domain
+    from linegraph.derivation import Derivation
     from linegraph.graph.multigraph import IntegerMatrix
     from linegraph.ir.program import Quantity
-    from linegraph.pipeline import Derivation
 
 LETTERS = {"w": "ω", "tau": "τ", "dphi": "Φ", "phi": "φ", "psi": "ψ"}
 """Letters of domains that are written otherwise."""
@@ -66,7 +66,7 @@ class Subject:
             folded: whether parameters are numbers.
         """
         self.derivation = derivation
-        self.model = derivation.model
+        self.model = derivation.system
         self.tree = derivation.structure
         self.network = derivation.formulation.network
         self.look = Notation(derivation)

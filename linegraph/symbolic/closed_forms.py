@@ -22,23 +22,21 @@ from linegraph.dynamics.whole_system import exchange_at, network_entries, united
 from linegraph.errors import ModelError
 from linegraph.ir.dag import Dag
 from linegraph.kinematics.arms import Arm, arms, coordinate_rates
-from linegraph.notation import Notation
+from linegraph.notation.notation import Notation
 from linegraph.paper.joint_form import PaperMatrices, paper_matrices
 from linegraph.paper.star_form import PrintedMatrices, printed_matrices
 from linegraph.symbolic.coriolis import coriolis_matrix, gradient_along
 from linegraph.symbolic.equation_list import Equations
-from linegraph.symbolic.linear_systems import linearise, state_space_of
 from linegraph.symbolic.simplification import BUDGET, Simplifier
 from linegraph.symbolic.small_motions import Motion
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from linegraph.algebra.scalar import Scalar
     from linegraph.dynamics.network_state import Exchange
     from linegraph.kinematics.links import KinematicTree
-    from linegraph.pipeline import Derivation
-    from linegraph.symbolic.state_space import StateSpace
+    from linegraph.numeric.derived import Derived
 
 
 class Symbolic:
@@ -57,7 +55,7 @@ class Symbolic:
 
     def __init__(
         self,
-        derivation: Derivation,
+        derivation: Derived,
         level: str = "full",
         budget: int = BUDGET,
         progress: Callable[[str], None] | None = None,
@@ -71,7 +69,7 @@ class Symbolic:
             progress: told what is being simplified.
         """
         self.derivation = derivation
-        self._model = derivation.model
+        self._model = derivation.system
         self.names = derivation.symbol_names
         self._sympy = Sympy(self.names)
         self.dag = Dag()
@@ -214,17 +212,6 @@ class Symbolic:
             solved = dict(zip(self.a, self.rates, strict=True))
             expressions = [sympy.simplify(x.subs(solved)) for x in expressions]
         return dict(zip(names, expressions, strict=True))
-
-    @cached_property
-    def state_space(self) -> StateSpace:
-        """A, B, C, D of a linear system; see `linear_systems`."""
-        return state_space_of(self)
-
-    def linearise(self, at: Mapping[Any, Any] | None = None) -> StateSpace:
-        """A, B, C, D for small deviations from an equilibrium or a steady motion; see `linear_systems`."""
-        return linearise(self, at or {})
-
-    linearize = linearise
 
     @property
     def defaults(self) -> dict[str, float]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import sympy
 
 if TYPE_CHECKING:
-    from linegraph.notation import Notation
+    from linegraph.notation.notation import Notation
 
 
 class Equations(list[Any]):

@@ -118,7 +118,7 @@ def _at(symbolic: Symbolic, values: Mapping[Symbol, Expr]) -> AtState:
     for symbol, e in _states(symbolic).items():
         if symbol not in values:
             simplifier.define(symbol, e)
-    own = symbolic.derivation.model.parameters
+    own = symbolic.derivation.system.parameters
     plain = {
         symbol: e.xreplace({x: sympy.Symbol(x.name) for x in e.free_symbols if x.name in own})
         for symbol, e in values.items()
@@ -144,7 +144,7 @@ def _in_numbers(symbolic: Symbolic, given: Mapping[Symbol, Expr]) -> dict[Symbol
     except ModelError:
         return None
     q = [sympy.Float(x) for x in found.q]
-    parameters = {p.name: p.value for p in derivation.model.parameters.values() if not p.derived}
+    parameters = {p.name: p.value for p in derivation.system.parameters.values() if not p.derived}
     values = _at_rest(symbolic) | {("q", k): x for k, x in enumerate(q)} | dict(given)
     return values | {("p", name): sympy.Float(x) for name, x in parameters.items()}
 
@@ -207,7 +207,7 @@ def _inputs(symbolic: Symbolic) -> tuple[list[int], list[int | None]]:
 
 def _independent(symbolic: Symbolic) -> list[int]:
     """The velocities that the emitted functions keep, if these are known."""
-    chosen = symbolic.derivation.model.choices.independent
+    chosen = symbolic.derivation.system.choices.independent
     velocities = [quantity.name for quantity in symbolic.tree.velocities]
     if chosen is not None:
         return [velocities.index(name) for name in chosen if name in velocities]
@@ -220,4 +220,4 @@ def _rank(symbolic: Symbolic) -> int:
 
 
 def _valued(symbolic: Symbolic) -> bool:
-    return all(p.value is not None for p in symbolic.derivation.model.parameters.values())
+    return all(p.value is not None for p in symbolic.derivation.system.parameters.values())

@@ -42,7 +42,7 @@ class StateSpace:
         >>> _ = model.voltage_source("s", ("a", "ground"), voltage="u")
         >>> _ = model.resistor("R1", ("a", "b"), resistance="R")
         >>> _ = model.capacitor("C1", ("b", "ground"), capacitance="C")
-        >>> space = derive(model).symbolic.state_space
+        >>> space = derive(model).state_space
         >>> space.A, space.B, space.transfer_function()[0]
         (Matrix([[-1/(C*R)]]), Matrix([[1/(C*R)]]), 1/(C*R*s + 1))
     """
@@ -64,7 +64,7 @@ class StateSpace:
         return "<linear system: states {}; inputs {}; outputs {}>".format(*names)
 
     def _repr_latex_(self) -> str:
-        from linegraph.notation import Notation
+        from linegraph.notation.notation import Notation
 
         look = Notation()
         rates = f"{look.latex(self.A)} x + {look.latex(self.B)} u"

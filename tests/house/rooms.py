@@ -41,21 +41,22 @@ ROOMS = (
     "paper",
     "numeric",
     "pipeline",
-    "identification",
     "notation",
     "symbolic",
+    "identification",
     "programs",
     "drawing",
-    "notebook",
+    "evaluation",
     "readers",
     "verification",
     "emission",
-    "report",
     "derivation",
+    "notebook",
+    "report",
     "cli",
     "__main__",
 )
-"""Packages and modules of the root from the ground up: each imports those above it in this list, no others."""
+"""Packages and modules of the root, from the ground up: each imports only those listed before it."""
 
 
 class Import(NamedTuple):

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from linegraph.components.joints import Joint
-    from linegraph.model.builder_words import BodyHandle
+    from linegraph.model.body_handle import BodyHandle
     from linegraph.readers.modelfile.document import Document
 
 SHARED = {*JOINTS, *ELEMENTS, "load", *CONSTRAINTS, "relation", *COMPONENTS}

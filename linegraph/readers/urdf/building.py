@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.components.joints import JOINTS
+from linegraph.model.body_handle import BodyHandle
 from linegraph.model.builder import Model
-from linegraph.model.builder_words import BodyHandle
 from linegraph.model.name_register import claims_of
 from linegraph.readers.urdf.mimics import Followers, followers_of
 from linegraph.readers.urdf.names import ROOT

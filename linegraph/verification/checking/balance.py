@@ -17,7 +17,7 @@ from linegraph.verification.golden.steps import STEP, stepped
 if TYPE_CHECKING:
     from linegraph.dynamics.network_state import Exchange
     from linegraph.networks import Network
-    from linegraph.pipeline import Derivation
+    from linegraph.numeric.derived import Derived
     from linegraph.verification.golden.point import Point
 
 FINE = 1e-2
@@ -56,7 +56,7 @@ def balances(point: Point) -> dict[str, tuple[float, float]]:
     return found
 
 
-def unjudged_components(derivation: Derivation) -> dict[str, str]:
+def unjudged_components(derivation: Derived) -> dict[str, str]:
     """Components whose balance says nothing, and why."""
     network = derivation.formulation.network
     if network is None:

@@ -10,7 +10,7 @@ from linegraph.verification.checking.findings import COMPONENTS as NETWORKS
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from linegraph.pipeline import Derivation
+    from linegraph.numeric.derived import Derived
     from linegraph.verification.checking.findings import Comparison, Findings
 
 HEADINGS = {
@@ -30,10 +30,10 @@ def counted(count: int, what: str, several: str = "") -> str:
     return f"{count} {what if count == 1 else several or what + 's'}"
 
 
-def report(derivation: Derivation, findings: Findings, heading: Callable[[str], str] = str) -> str:
+def report(derivation: Derived, findings: Findings, heading: Callable[[str], str] = str) -> str:
     """The findings for a reader."""
     tree = derivation.structure
-    lines = [heading(f"model {derivation.model.name}")]
+    lines = [heading(f"model {derivation.system.name}")]
     freedoms = derivation.assembled.freedoms if tree.closed else tree.layout.mechanical
     states = len(tree.velocities) - tree.layout.mechanical
     counts = [counted(freedoms, "degree of freedom", "degrees of freedom")]

@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.scalar import Scalar
     from linegraph.dynamics.chords import Equation
+    from linegraph.evaluation import Function
     from linegraph.ir.program import Module
     from linegraph.kinematics.links import KinematicTree
-    from linegraph.notebook.functions import Function
+    from linegraph.numeric.derived import Derived
     from linegraph.numeric.reference import Numeric
-    from linegraph.pipeline import Derivation
     from linegraph.verification.golden.point import Point
 
 Vector = list[float]
@@ -38,7 +38,7 @@ class _State:
     """A model at a state: the routes to M, h and the accelerations that share its derivation."""
 
     point: Point
-    derivation: Derivation
+    derivation: Derived
     algebra: Floats
     parameters: dict[str, Scalar]
     tree: KinematicTree
@@ -188,7 +188,7 @@ class _State:
 
     def _applied(self, crossed: list[Arm], *, driven: bool) -> Any:
         state = (tuple(self.q), tuple(self.v))
-        model = self.derivation.model
+        model = self.derivation.system
         return applied(
             model, self.tree, self.algebra, self.parameters, crossed, *state, driven=driven
         )

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from linegraph.dynamics.chords import equations
 from linegraph.dynamics.regularity import cause
 from linegraph.errors import ModelError
-from linegraph.notebook.functions import loaded
-from linegraph.pipeline import placed
+from linegraph.evaluation import loaded
+from linegraph.model.system import placed
 from linegraph.programs.register import module_of
 from linegraph.verification.checking.balance import balances, unjudged_components
 from linegraph.verification.checking.findings import (
@@ -30,9 +30,9 @@ from linegraph.verification.golden.draws import SINGULAR, Asked, Drawing
 from linegraph.verification.golden.point import Kept
 
 if TYPE_CHECKING:
+    from linegraph.evaluation import Function
     from linegraph.ir.program import Module
-    from linegraph.notebook.functions import Function
-    from linegraph.pipeline import Derivation
+    from linegraph.numeric.derived import Derived
     from linegraph.verification.golden.point import Point
 
 STATES = 12
@@ -41,7 +41,7 @@ STATES = 12
 NEARLY_SINGULAR = "at all states that were tried the mass matrix is nearly singular"
 
 
-def check(derivation: Derivation, seed: int = 0) -> Findings:
+def check(derivation: Derived, seed: int = 0) -> Findings:
     """Compare the routes at `STATES` random states.
 
     Raises:
@@ -50,10 +50,10 @@ def check(derivation: Derivation, seed: int = 0) -> Findings:
     try:
         return _check(derivation, seed)
     except ModelError as error:
-        raise placed(error, derivation.model) from None
+        raise placed(error, derivation.system) from None
 
 
-def _check(derivation: Derivation, seed: int) -> Findings:
+def _check(derivation: Derived, seed: int) -> Findings:
     tree = derivation.structure
     # first of all, since what the structure forbids is no law that bounds could help
     module = module_of(derivation, "checked", folded=False, about=())
@@ -84,7 +84,7 @@ def _check(derivation: Derivation, seed: int) -> Findings:
     return Findings(found, unjudged, len(points))
 
 
-def _points(derivation: Derivation, seed: int) -> tuple[list[Point], bool]:
+def _points(derivation: Derived, seed: int) -> tuple[list[Point], bool]:
     """States, and whether accelerations are known at them.
 
     Raises:
@@ -158,7 +158,7 @@ def _balances(point: Point) -> dict[str, tuple[float, float]]:
         return {}
 
 
-def _freedoms(derivation: Derivation, points: list[Point]) -> Comparison:
+def _freedoms(derivation: Derived, points: list[Point]) -> Comparison:
     """Whether the assembly counts as many freedoms as the Jacobian leaves at the states."""
     mechanical = derivation.structure.layout.mechanical
     expected = min(mechanical - point.rank for point in points)
@@ -167,7 +167,7 @@ def _freedoms(derivation: Derivation, points: list[Point]) -> Comparison:
     return Comparison(LOOPS, "number of freedoms", float(found != expected), place)
 
 
-def _driven(derivation: Derivation) -> bool:
+def _driven(derivation: Derived) -> bool:
     """Whether a prescribed motion does work."""
     layout = derivation.structure.layout
     return any(place.drive for place in layout.places.values()) or any(
@@ -175,7 +175,7 @@ def _driven(derivation: Derivation) -> bool:
     )
 
 
-def _unjudged(derivation: Derivation, *, moving: bool) -> tuple[tuple[str, str], ...]:
+def _unjudged(derivation: Derived, *, moving: bool) -> tuple[tuple[str, str], ...]:
     """What is not compared, and why."""
     tree = derivation.structure
     found: list[tuple[str, str]] = []
@@ -201,7 +201,7 @@ def _unjudged(derivation: Derivation, *, moving: bool) -> tuple[tuple[str, str],
     return tuple(found)
 
 
-def _names(derivation: Derivation) -> dict[str, list[str]]:
+def _names(derivation: Derived) -> dict[str, list[str]]:
     """What entries are called."""
     tree = derivation.structure
     v = [quantity.name for quantity in tree.velocities]

@@ -11,8 +11,8 @@ from linegraph.errors import ModelError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from linegraph.numeric.derived import Derived
     from linegraph.numeric.reference import Numeric
-    from linegraph.pipeline import Derivation
 
 BOUND = (
     "at all states that were tried; bound them where it is defined: [check] with inputs, coordinates, "
@@ -21,7 +21,7 @@ BOUND = (
 )
 
 
-def undefined(derivation: Derivation, error: ModelError, numeric: Numeric | None) -> ModelError:
+def undefined(derivation: Derived, error: ModelError, numeric: Numeric | None) -> ModelError:
     """An error of a law that is defined nowhere, with the component and with what to do.
 
     Args:
@@ -33,16 +33,16 @@ def undefined(derivation: Derivation, error: ModelError, numeric: Numeric | None
     if not thing:
         thing, others = _owner(derivation, problem.partition("(")[0], numeric)
         problem += f" (it may also be of {', '.join(others)})" * bool(others)
-    return ModelError(thing or f'model "{derivation.model.name}"', f"{problem}, {BOUND}")
+    return ModelError(thing or f'model "{derivation.system.name}"', f"{problem}, {BOUND}")
 
 
-def _owner(derivation: Derivation, function: str, numeric: Numeric | None) -> tuple[str, list[str]]:
+def _owner(derivation: Derived, function: str, numeric: Numeric | None) -> tuple[str, list[str]]:
     """The component of a network whose law is not defined, and others it may be.
 
     These are the components whose own expressions use the function that has no value; of several those whose
     expressions have none for the inputs, the time and the parameters.
     """
-    candidates = [c for c in derivation.model.components if function in _used(c.values())]
+    candidates = [c for c in derivation.system.components if function in _used(c.values())]
     if len(candidates) > 1 and numeric is not None:
         certain = [c for c in candidates if _fails(numeric, c.values())]
         candidates = certain or candidates

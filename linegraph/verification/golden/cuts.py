@@ -28,11 +28,12 @@ from linegraph.dynamics.law_names import scope
 from linegraph.dynamics.network_state import ALL
 from linegraph.dynamics.reaction_rows import rows_of
 from linegraph.errors import ModelError
+from linegraph.model.terminal_graphs import terminals_of
 
 if TYPE_CHECKING:
     from linegraph.kinematics.links import Closure, Seat
-    from linegraph.model.builder import Model
-    from linegraph.pipeline import Derivation
+    from linegraph.model.system import System
+    from linegraph.numeric.derived import Derived
     from linegraph.verification.golden.bodies import Bodies
     from linegraph.verification.golden.kinematics import Kinematics
     from linegraph.verification.golden.walk import Moved, Valued, Walk
@@ -124,7 +125,7 @@ class Cuts:
         lam: the same of the multipliers.
     """
 
-    derivation: Derivation
+    derivation: Derived
     walk: Walk
     bodies: Bodies
     kinematics: Kinematics
@@ -132,9 +133,9 @@ class Cuts:
     lam: Valued
 
     @property
-    def model(self) -> Model:
+    def model(self) -> System:
         """What was said."""
-        return self.derivation.model
+        return self.derivation.system
 
     @cached_property
     def acting(self) -> Acting:
@@ -314,7 +315,7 @@ class Cuts:
     @cached_property
     def joints(self) -> dict[str, Pull]:
         """What every joint and constraint exerts on its head, about the head's origin; elements not."""
-        terminals = self.model.terminals()
+        terminals = terminals_of(self.model)
         chords = {
             closure.component.name: self._chord(closure)
             for closure in self.walk.tree.closures
@@ -360,7 +361,7 @@ class Cuts:
     def _branches(self) -> dict[str, tuple[list[str], bool]]:
         """Of every joint that is a branch the bodies beyond it, and whether its head is among them."""
         joints = {joint.name: joint for joint in self.model.joints}
-        terminals = self.model.terminals()
+        terminals = terminals_of(self.model)
         walk = self.derivation.topology.walk
         steps = [step for step in walk if {step.edge.component, step.edge.name} <= joints.keys()]
         links: dict[str, list[tuple[str, str]]] = {}

@@ -114,7 +114,7 @@ class Derivatives:
     @cached_property
     def _by_parameters(self) -> _Slopes:
         values = self.point.walk.numeric.parameters
-        names = [p.name for p in self.point.derivation.model.parameters.values() if not p.derived]
+        names = [p.name for p in self.point.derivation.system.parameters.values() if not p.derived]
         steps = [{name: complex(values[name], STEP)} for name in names]
         return self._slopes([self._beside(parameters=step) for step in steps])
 
@@ -144,7 +144,7 @@ class Derivatives:
     @cached_property
     def _parameter_units(self) -> Array:
         """For each parameter what its derivatives are counted in: those by its relative change."""
-        np, model = self.point.walk.np, self.point.derivation.model
+        np, model = self.point.walk.np, self.point.derivation.system
         values = self.point.walk.numeric.parameters
         own = [abs(float(values[p.name])) for p in model.parameters.values() if not p.derived]
         return np.array([1 / x if x else 0.0 for x in own])

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from linegraph.ir.program import Quantity
     from linegraph.model.bounds import Interval
+    from linegraph.numeric.derived import Derived
     from linegraph.numeric.reference import Numeric
-    from linegraph.pipeline import Derivation
     from linegraph.verification.golden.walk import Valued
 
 STATES = 10
@@ -88,7 +88,7 @@ class Drawing:
         varied: whether those with a value may be: the functions take them as an argument.
     """
 
-    derivation: Derivation
+    derivation: Derived
     draw: random.Random
     kept: Kept
     chosen: Sequence[Asked]
@@ -138,7 +138,7 @@ class Drawing:
 
     def _require_known(self) -> None:
         """Refuse bounds of what the model does not have."""
-        tree, model = self.derivation.structure, self.derivation.model
+        tree, model = self.derivation.structure, self.derivation.system
         bounds = model.bounds
         known: dict[str, Iterable[str]] = {
             "coordinates": [x.name for x in tree.positions],
@@ -174,12 +174,12 @@ class Drawing:
                 continue
         if first is not None and not defined:
             raise undefined(self.derivation, first, self._somewhere())
-        who = f'model "{self.derivation.model.name}"'
+        who = f'model "{self.derivation.system.name}"'
         raise ModelError(who, SINGULAR)
 
     def _somewhere(self) -> Numeric | None:
         """The model for some inputs, at a time, to ask whose law is not defined."""
-        tree, bounds = self.derivation.structure, self.derivation.model.bounds
+        tree, bounds = self.derivation.structure, self.derivation.system.bounds
         u = self._some(tree.inputs, bounds.inputs, (-1.0, 1.0))
         try:
             return self.derivation.numeric(None, bounds.sometime, u)
@@ -206,7 +206,7 @@ class Drawing:
             None where the loops do not close, or not within the bounds.
         """
         low, reach = within
-        tree, model = self.derivation.structure, self.derivation.model
+        tree, model = self.derivation.structure, self.derivation.system
         first, bounds = tree.layout.mechanical, model.bounds
         still = rest and low < 0
         t = self._one((0.1, 1.0), bounds.t) if model.depends_on_time else 0.0
@@ -220,7 +220,7 @@ class Drawing:
             q = _held(tree.positions, bounds.coordinates, _at_rest(self.derivation))
         numeric.tree.normalise(q)
         if tree.closed:
-            q, found = consistent(self.derivation, numeric, self.draw)
+            q, found = consistent(self.derivation, self.derivation.assembled.q, numeric, self.draw)
             if rest and not model.depends_on_time and not any(u) and p is None:
                 q, found = list(self.derivation.assembled.q), [0.0] * len(found)
             v, states = found[:first], found[first:] if not rest else states
@@ -247,7 +247,7 @@ class Drawing:
             varied: whether any is to have another value.
             zeros: whether those that are zero are.
         """
-        model, found = self.derivation.model, {}
+        model, found = self.derivation.system, {}
         for parameter in model.parameters.values():
             name = parameter.name
             if parameter.derived or not varied or name in self._fixed:
@@ -263,7 +263,7 @@ class Drawing:
     @cached_property
     def _little(self) -> dict[str, float]:
         """Values for parameters that are zero: little beside all others of their unit, if there are some."""
-        own = [p for p in self.derivation.model.parameters.values() if not p.derived]
+        own = [p for p in self.derivation.system.parameters.values() if not p.derived]
         found = {}
         for parameter in own:
             if parameter.value == 0:
@@ -278,7 +278,7 @@ class Drawing:
         derivation = self.derivation
         if not derivation.structure.closed or not derivation.assembled.redundant:
             return frozenset()
-        own = {p.name: p.value for p in derivation.model.parameters.values() if not p.derived}
+        own = {p.name: p.value for p in derivation.system.parameters.values() if not p.derived}
         others = {
             name: APART[1] * float(value or self._little.get(name, 0))
             for name, value in own.items()
@@ -287,11 +287,11 @@ class Drawing:
 
     def _closes(self, p: dict[str, float]) -> bool:
         """Whether loops close with these parameters, with as many constraints independent as ever."""
-        derivation, bounds = self.derivation, self.derivation.model.bounds
+        derivation, bounds = self.derivation, self.derivation.system.bounds
         u = self._some(derivation.structure.inputs, bounds.inputs, (-1.0, 1.0))
         try:
             numeric = derivation.numeric(p, bounds.sometime, u)
-            q, v = consistent(derivation, numeric, random.Random(0))
+            q, v = consistent(derivation, derivation.assembled.q, numeric, random.Random(0))
             if not self._legal(numeric, q, v):
                 return False
             point = Point(derivation, bounds.sometime, u, q, v, v, q, v, self.kept, p)
@@ -301,7 +301,7 @@ class Drawing:
 
     def _legal(self, numeric: Numeric, q: Sequence[float], v: Sequence[float]) -> bool:
         """Whether the loops are closed, and everything is within its bounds."""
-        tree, bounds = self.derivation.structure, self.derivation.model.bounds
+        tree, bounds = self.derivation.structure, self.derivation.system.bounds
         gaps = [*numeric.constraints(q), *numeric.constraint_rates(q, v)]
         pairs = [(tree.positions, q, bounds.coordinates), (tree.velocities, v, bounds.velocities)]
         inside = (
@@ -379,7 +379,7 @@ def _even(points: Sequence[Point], calm: Any) -> bool:
     return even and bool((most <= EVEN * np.where(least > 0, least, np.inf)).all())
 
 
-def _at_rest(derivation: Derivation) -> list[float]:
+def _at_rest(derivation: Derived) -> list[float]:
     """Where the frames of all joints coincide."""
     q = [0.0] * len(derivation.structure.positions)
     for link in derivation.structure.links:

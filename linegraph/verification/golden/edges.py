@@ -14,6 +14,7 @@ from linegraph.components.body import GROUND, MASS_CENTER
 from linegraph.components.constraints.base import Constraint
 from linegraph.components.forces import Load
 from linegraph.model.choices import GROUND_AXES, HEAD
+from linegraph.model.terminal_graphs import terminals_of
 from linegraph.verification.golden.cuts import Cuts, Pull
 from linegraph.verification.golden.walk import own_rates
 
@@ -84,7 +85,7 @@ class Edges:
             else:
                 between = element.between or joints[str(element.joint)]
                 found[element.name] = (*between, False)
-        for terminal, (body, _) in self.cuts.model.terminals().items():
+        for terminal, (body, _) in terminals_of(self.cuts.model).items():
             if body in self.cuts.model.bodies:
                 name = f"{body}/arm{terminal.removeprefix(body)}"
                 found[name] = (f"{body}.{MASS_CENTER}", terminal, True)

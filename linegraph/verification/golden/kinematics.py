@@ -11,6 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from linegraph.components.body import MASS_CENTER
+from linegraph.model.terminal_graphs import terminals_of
 from linegraph.spatial.vector import ZERO, add, times
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ class Kinematics:
         """How it moves: a body, a frame of one, or its mass centre."""
         model, resolve = self.walk.numeric.model, self.walk.numeric.resolve
         assert model is not None
-        terminals = model.terminals()
+        terminals = terminals_of(model)
         if name in terminals:
             body, placement = terminals[name]
             at: Any = [float(resolve(x)) for x in placement.at]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from linegraph.dynamics.chords import equations
 from linegraph.dynamics.circuit_lengths import of_rows, pure
@@ -16,7 +16,6 @@ from linegraph.tolerance import DEPENDENT
 from linegraph.verification.golden.bodies import NOISE, Bodies
 from linegraph.verification.golden.constraints import Constraints
 from linegraph.verification.golden.cuts import Cuts
-from linegraph.verification.golden.derivatives import Derivatives
 from linegraph.verification.golden.edges import Edges
 from linegraph.verification.golden.kinematics import Kinematics
 from linegraph.verification.golden.outputs import Outputs
@@ -24,12 +23,14 @@ from linegraph.verification.golden.parameters import Parameters
 from linegraph.verification.golden.walk import Walk
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
-    from linegraph.pipeline import Derivation
+    from linegraph.numeric.derived import Derived
     from linegraph.verification.golden.walk import Valued
 
     Array = Any
+
+View = TypeVar("View")
 
 
 class Kept(NamedTuple):
@@ -58,7 +59,7 @@ class Point:
         lam: multipliers, which are any.
     """
 
-    derivation: Derivation
+    derivation: Derived
     t: float
     u: list[float]
     q: list[float]
@@ -115,10 +116,15 @@ class Point:
         """What is closed."""
         return Constraints(self.walk)
 
+    def seen(self, view: Callable[[Point], View]) -> View:
+        """Another view of this state, made once: `derivatives.Derivatives` stands above this file."""
+        if view not in self._views:
+            self._views[view] = view(self)
+        return self._views[view]  # type: ignore[no-any-return]
+
     @cached_property
-    def slopes(self) -> Derivatives:
-        """What that changes beside it."""
-        return Derivatives(self)
+    def _views(self) -> dict[Any, Any]:
+        return {}
 
     @cached_property
     def kinematics(self) -> Kinematics:
@@ -161,7 +167,7 @@ class Point:
     def stabilised(self) -> Valued:
         """γ, with Baumgarte's terms if the model asks for them."""
         bias, size = self.closed.bias
-        chosen = self.derivation.model.choices.baumgarte
+        chosen = self.derivation.system.choices.baumgarte
         if chosen is None:
             return bias, size
         alpha, beta = (float(self.walk.numeric.resolve(x)) for x in chosen)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.ir.golden_vectors import RETURNED
 from linegraph.verification.golden.constraints import Constraints
+from linegraph.verification.golden.derivatives import Derivatives
 from linegraph.verification.golden.operational import Operational
 
 if TYPE_CHECKING:
@@ -146,7 +147,7 @@ def _of_slopes(name: str, key: str) -> Callable[[Point], Valued]:
     """What gives one derivative: a property of `Derivatives`."""
 
     def made(point: Point) -> Valued:
-        return getattr(point.slopes, key)  # type: ignore[no-any-return]
+        return getattr(point.seen(Derivatives), key)  # type: ignore[no-any-return]
 
     made.__name__ = name
     return made

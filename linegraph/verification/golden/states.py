@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from linegraph.ir.program import Module, Program
     from linegraph.kinematics.frame_trees import NamedFrame
-    from linegraph.pipeline import Derivation
+    from linegraph.numeric.derived import Derived
     from linegraph.verification.golden.walk import Valued
 
 UNTESTED = {
@@ -42,7 +42,7 @@ HANDED = "called by the function of its name without the ending"
 
 
 def vectors(
-    derivation: Derivation, module: Module, seed: int = 0, frames: Sequence[NamedFrame] = ()
+    derivation: Derived, module: Module, seed: int = 0, frames: Sequence[NamedFrame] = ()
 ) -> Vectors:
     """Golden vectors of all functions of a module that are known by another route.
 

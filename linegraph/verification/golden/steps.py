@@ -129,7 +129,7 @@ def stepped(
     assert derivation is not None
     if u is not None or t is not None or parameters is not None:
         known = {**numeric.parameters, **(parameters or {})}
-        model = derivation.model
+        model = derivation.system
         values = valued(model.parameters.values(), algebra, lambda p: known[p.name])
         tree = derivation.tree(algebra, values)
     found = replace(numeric, tree=tree, algebra=algebra, parameters=values)

@@ -1,30 +1,33 @@
-"""How a derivation and a model look in a notebook: short, and where to look next."""
+"""What notebooks show: pictures of graphs, short overviews of models and derivations."""
 
 from __future__ import annotations
 
 from html import escape
-from typing import TYPE_CHECKING
 
-from linegraph.drawing.pictures import graph_svg
+from linegraph.derivation import Derivation
+from linegraph.display import register
+from linegraph.drawing.pictures import graph_svg, projection_svg, system_svg, topology_svg
+from linegraph.drawing.scene import Scene
+from linegraph.drawing.svg import svg_text
 from linegraph.errors import LinegraphError
-from linegraph.notation import Notation
-
-if TYPE_CHECKING:
-    from linegraph.model.builder import Model
-    from linegraph.pipeline import Derivation
+from linegraph.graph.forest import Topology
+from linegraph.graph.multigraph import Projection, SystemGraph
+from linegraph.model.builder import Model
+from linegraph.model.system import System
+from linegraph.notation.notation import Notation
 
 SMALL = 4
 """A derivation with more velocities does not show its equations unasked."""
 
 
-def of_derivation(derivation: Derivation) -> str:
+def _of_derivation(derivation: Derivation) -> str:
     """Its size, its equations of motion if it is small, and the graph with the chosen tree."""
     tree = derivation.structure
     sizes = (
         f"{len(tree.positions)} coordinates q, {len(tree.velocities)} velocities v, "
         f"{len(tree.inputs)} inputs u"
     )
-    head = f"<p><b>{escape(derivation.model.name)}</b>: {sizes}</p>"
+    head = f"<p><b>{escape(derivation.system.name)}</b>: {sizes}</p>"
     return head + _equations(derivation) + graph_svg(derivation)
 
 
@@ -39,7 +42,7 @@ def _equations(derivation: Derivation) -> str:
     return "".join(f"<p>{look.mathml(equation)}</p>" for equation in found)
 
 
-def of_model(model: Model) -> str:
+def _of_model(model: Model | System) -> str:
     """Its bodies and joints, elements and components."""
     rows = [("body", name, "") for name in model.bodies]
     rows += [(joint.kind, joint.name, " → ".join(joint.between)) for joint in model.joints]
@@ -48,3 +51,12 @@ def of_model(model: Model) -> str:
     cells = [[f"<td>{escape(str(cell))}</td>" for cell in row] for row in rows]
     lines = "".join(f"<tr>{''.join(row)}</tr>" for row in cells)
     return f"<p><b>{escape(model.name)}</b> {escape(model.about)}</p><table>{lines}</table>"
+
+
+register(Projection, svg=projection_svg)
+register(SystemGraph, svg=lambda graph: system_svg(graph.projections))
+register(Topology, svg=topology_svg)
+register(Scene, svg=svg_text)
+register(Model, html=_of_model)
+register(System, html=_of_model)
+register(Derivation, html=_of_derivation)

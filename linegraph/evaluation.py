@@ -22,7 +22,7 @@ from linegraph.programs.workspace import Functions
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from linegraph.pipeline import Derivation
+    from linegraph.numeric.derived import Derived
 
 NAME = "expression"
 """The function that computes a sympy expression."""
@@ -83,20 +83,20 @@ class Function:
         return f"<function {self.name}({', '.join(self.arguments)}) of {self.model}>"
 
 
-def function(derivation: Derivation, what: Any, frames: Iterable[str] = ()) -> Function:
+def function(derivation: Derived, what: Any, frames: Iterable[str] = ()) -> Function:
     """An emitted function by its name, or one that computes a sympy expression.
 
     Raises:
         ModelError: there is no such function, or a symbol is not of this derivation.
     """
-    name = codegen.naming.identifier(derivation.model.name)
+    name = codegen.naming.identifier(derivation.system.name)
     if not isinstance(what, str):
         return _of_expression(derivation, name, what)
     if what == PREPARE or what.endswith(PREPARED_SUFFIX):
         problem = "the order of its constants is that of one emitted file; ask for the function without them"
         raise ModelError(f'function "{what}"', problem)
-    folded = not derivation.model.parameters
-    named = named_frames(derivation.model, frames)
+    folded = not derivation.system.parameters
+    named = named_frames(derivation.system, frames)
     only = _maker(what) if named or what in PROGRAMS else ()
     module = module_of(derivation, name, folded=folded, about=(), only=only, frames=named)
     known = [program.name for program in module.programs]
@@ -116,9 +116,9 @@ def _maker(what: str) -> tuple[str, ...]:
     return (what,) if what in PROGRAMS else ()
 
 
-def _of_expression(derivation: Derivation, name: str, what: Any) -> Function:
+def _of_expression(derivation: Derived, name: str, what: Any) -> Function:
     """The function of an expression or a matrix: of q, v, u, a as far as it depends on them."""
-    functions = Functions(derivation, not derivation.model.parameters)
+    functions = Functions(derivation, not derivation.system.parameters)
     whole = sympy.sympify(what, strict=True)
     dag, tree = functions.dag, functions.tree
     symbols = {
@@ -140,18 +140,18 @@ def _of_expression(derivation: Derivation, name: str, what: Any) -> Function:
     program = functions.program(NAME, "An expression of the model's symbols.", given, (result,))
     state = (tree.positions, tree.velocities, tree.inputs)
     parameters = parameters_of(derivation)
-    time = derivation.model.depends_on_time
+    time = derivation.system.depends_on_time
     module = Module(name, (), *state, parameters, time, (program,))
     return loaded(derivation, module, NAME, single=single)
 
 
-def loaded(derivation: Derivation, module: Module, name: str, *, single: bool = False) -> Function:
+def loaded(derivation: Derived, module: Module, name: str, *, single: bool = False) -> Function:
     """A function of a module, ready to be called; `single` if it computes one number and no array."""
     (source,) = codegen.render(module, "python").values()
     program = next(p for p in module.programs if p.name == name)
     arguments = tuple(a.name for a in program.arguments if a.name != "p")
     loaded = _Loader(source).loaded(module.name)
-    return Function(name, arguments, derivation.model.name, source, loaded, single)
+    return Function(name, arguments, derivation.system.name, source, loaded, single)
 
 
 class _Loader(SourceLoader):

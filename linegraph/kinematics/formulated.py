@@ -1,0 +1,72 @@
+"""A system whose trees are chosen: what every later stage takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from linegraph.components.parameters import valued
+from linegraph.ir.dag import Dag
+from linegraph.kinematics.tree import kinematic_tree
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from linegraph.algebra.protocol import Algebra
+    from linegraph.algebra.scalar import Scalar
+    from linegraph.formulation.formulate import Formulation
+    from linegraph.graph.forest import Topology
+    from linegraph.graph.multigraph import SystemGraph
+    from linegraph.kinematics.links import KinematicTree
+    from linegraph.model.system import System
+
+
+@dataclass(frozen=True, repr=False)
+class Formulated:
+    """A system with its graph and the chosen trees.
+
+    Attributes:
+        system: what was said.
+        graph: the united terminal graph.
+        formulation: the chosen trees.
+    """
+
+    system: System
+    graph: SystemGraph
+    formulation: Formulation
+
+    @property
+    def topology(self) -> Topology:
+        """The chosen tree of the translational projection; the rotational one mostly has the same edges."""
+        return self.formulation.translation
+
+    def tree(self, algebra: Algebra, parameters: Mapping[str, Scalar]) -> KinematicTree:
+        """The links over an algebra, parameters as given."""
+        return kinematic_tree(self.system, self.formulation, algebra, parameters)
+
+    @cached_property
+    def structure(self) -> KinematicTree:
+        """The links with every parameter and input a symbol: for counting and naming."""
+        dag = Dag()
+        parameters = self.system.parameters.values()
+        return self.tree(dag, valued(parameters, dag, lambda p: dag.symbol("p", p.name)))
+
+    def circuit_of(self, chord: str) -> list[str]:
+        """The joints and constraints of the circuit that a chord closes, the chord last."""
+        circuit = self.topology.circuit
+        names = {*(joint.name for joint in self.system.joints), *self.topology_names}
+        if chord not in circuit.rows:
+            return [chord]
+        row = circuit.entries[circuit.rows.index(chord)]
+        return [*(n for j in row if (n := circuit.columns[j]) in names), chord]
+
+    @property
+    def valued(self) -> bool:
+        """Whether every parameter has a value."""
+        return all(p.value is not None for p in self.system.parameters.values())
+
+    @property
+    def topology_names(self) -> tuple[str, ...]:
+        """Inertia edges that are branches by choice."""
+        return tuple(f"{body}/inertia" for body in self.formulation.absolute)
