@@ -44,6 +44,7 @@ def _equations(derivation: Derivation) -> str:
 
 def _of_model(model: Model | System) -> str:
     """Its bodies and joints, elements and components."""
+    model = model.system()
     rows = [("body", name, "") for name in model.bodies]
     rows += [(joint.kind, joint.name, " → ".join(joint.between)) for joint in model.joints]
     others = (*model.elements, *model.constraints, *model.components)

@@ -58,7 +58,7 @@ def test_completion_prints_a_script(shell: str) -> None:
 
 def test_help_imports_nothing_heavy() -> None:
     script = (
-        "import sys; from linegraph.cli import main\n"
+        "import sys; from linegraph.cli.main import main\n"
         "try: main(['--help'])\nexcept SystemExit: pass\n"
         "heavy = {'sympy', 'numpy', 'networkx', 'jinja2', 'lxml'} & set(sys.modules)\n"
         "sys.exit(f'imported: {heavy}' if heavy else 0)"
@@ -71,7 +71,7 @@ def test_help_imports_nothing_heavy() -> None:
 
 def test_emitting_a_robot_imports_neither_sympy_nor_numpy_nor_networkx(tmp_path: Path) -> None:
     script = (
-        "import sys; from linegraph.cli import main\n"
+        "import sys; from linegraph.cli.main import main\n"
         "try: main(sys.argv[1:])\nexcept SystemExit: pass\n"
         "heavy = {'sympy', 'numpy', 'networkx'} & set(sys.modules)\n"
         "sys.exit(f'imported: {heavy}' if heavy else 0)"

@@ -31,9 +31,9 @@ def four_bar() -> lg.Derivation:
 
 def shown() -> list[Any]:
     d = furuta()
-    module = module_for(d.model, "furuta")
+    module = module_for(d.system, "furuta")
     stages = [
-        d.model,
+        d.system,
         d.graph,
         d.graph["translation"],
         d.topology,
@@ -65,7 +65,7 @@ def test_every_stage_can_be_looked_at() -> None:
     d = furuta()
     for stage in (d.graph, d.graph["rotation"], d.topology, d.sketch()):
         assert "<svg" in stage._repr_svg_()
-    for stage in (d.model, d, d.topology.circuit):
+    for stage in (d.system, d, d.topology.circuit):
         assert stage._repr_html_()
     assert r"\dot x" in d.linearise()._repr_latex_()
     assert d.equations()._repr_latex_().count("&=") == 2

@@ -319,7 +319,9 @@ def test_the_json_locator_finds_exactly_what_the_reader_reads(seed: int) -> None
 
 
 def test_the_shipped_schema_is_current() -> None:
-    assert PATH.read_text(encoding="utf-8") == text(), "python -m linegraph.modelfile.schema"
+    assert PATH.read_text(encoding="utf-8") == text(), (
+        "python -m linegraph.readers.modelfile.schema"
+    )
 
 
 def _valid(value: Any, wanted: dict[str, Any]) -> bool:

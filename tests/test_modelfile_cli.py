@@ -108,7 +108,7 @@ def test_the_schema_is_printed() -> None:
 def test_emitting_a_model_file_imports_nothing_heavy(tmp_path: Path) -> None:
     (tmp_path / "small.toml").write_text(SMALL)
     script = (
-        "import sys; from linegraph.cli import main\n"
+        "import sys; from linegraph.cli.main import main\n"
         "try: main(sys.argv[1:])\nexcept SystemExit: pass\n"
         "heavy = {'sympy', 'numpy', 'networkx', 'lxml'} & set(sys.modules)\n"
         "sys.exit(f'imported: {heavy}' if heavy else 0)"

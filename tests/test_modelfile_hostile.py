@@ -28,7 +28,7 @@ LIMITED = f"""
 import resource, sys, time
 resource.setrlimit(resource.RLIMIT_AS, ({MEBIBYTES} << 20, {MEBIBYTES} << 20))
 from linegraph.errors import LinegraphError
-from linegraph.modelfile import read
+from linegraph.readers.modelfile import read
 start = time.process_time()
 try:
     read(sys.argv[1])
@@ -41,7 +41,7 @@ WATCHED = """
 import sys
 import difflib, tomllib
 from linegraph.errors import LinegraphError
-from linegraph.modelfile import read
+from linegraph.readers.modelfile import read
 
 def hook(event, arguments):
     watched = event.split(".")[0] in ("open", "socket", "subprocess", "os", "exec", "import", "urllib")

@@ -365,9 +365,9 @@ def test_values_of_any_type_are_refused_or_taken(kind: str) -> None:
 
 WATCHED = """
 import json, sys
-from linegraph.emission import render
+from linegraph.emission.emit import render
 from linegraph.errors import LinegraphError
-from linegraph.modelfile import parse
+from linegraph.readers.modelfile import parse
 
 texts = json.load(sys.stdin)
 
@@ -424,9 +424,9 @@ LIMITED = f"""
 import resource, sys, time
 resource.setrlimit(resource.RLIMIT_AS, ({MEBIBYTES} << 20, {MEBIBYTES} << 20))
 from pathlib import Path
-from linegraph.emission import render
+from linegraph.emission.emit import render
 from linegraph.errors import LinegraphError
-from linegraph.modelfile import parse
+from linegraph.readers.modelfile import parse
 text = Path(sys.argv[1]).read_bytes()
 start = time.process_time()
 try:

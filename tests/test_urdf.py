@@ -573,7 +573,7 @@ def test_importing_and_reading_loads_nothing_heavy(tmp_path: Path) -> None:
     path.write_bytes(ZOO)
     script = (
         "import sys, linegraph; assert 'lxml' not in sys.modules\n"
-        f"from linegraph.urdf import read; read({str(path)!r}); read({str(path)!r}, symbolic=True)\n"
+        f"from linegraph.readers.urdf import read; read({str(path)!r}); read({str(path)!r}, symbolic=True)\n"
         "print([m for m in ('numpy', 'sympy', 'networkx', 'pydantic', 'jinja2') if m in sys.modules])"
     )
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)

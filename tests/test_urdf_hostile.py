@@ -27,7 +27,7 @@ LIMITED = f"""
 import resource, sys, time
 resource.setrlimit(resource.RLIMIT_AS, ({MEBIBYTES} << 20, {MEBIBYTES} << 20))
 from linegraph.errors import SourceError
-from linegraph.urdf import read
+from linegraph.readers.urdf import read
 start = time.process_time()
 try:
     read(sys.argv[1])
@@ -40,7 +40,7 @@ WATCHED = """
 import sys
 import difflib, lxml.etree
 from linegraph.errors import SourceError
-from linegraph.urdf import read
+from linegraph.readers.urdf import read
 
 def hook(event, arguments):
     watched = event.split(".")[0] in ("open", "socket", "subprocess", "os", "exec", "compile", "urllib")

@@ -35,21 +35,19 @@ from linegraph.model.choices import Choices, chosen
 from linegraph.model.coupling import Coupling
 from linegraph.model.macros import add_basement, add_rotor, followers_at, locked
 from linegraph.model.outputs import Output
-from linegraph.model.system import System, frozen, settled
-from linegraph.model.terminal_graphs import system_graph, terminals_of
+from linegraph.model.snapshot import Snapshots
 from linegraph.spatial.vector import ZERO, Vector
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from linegraph.graph.multigraph import SystemGraph
     from linegraph.spatial.placement import Placement
 
 STANDARD_GRAVITY: Vector = (0, 0, -9.81)
 SNAP = 1e-11
 
 
-class Model(Shown, Words, Bounded):
+class Model(Shown, Words, Bounded, Snapshots):
     """A system of components, connected at terminals.
 
     Args:
@@ -177,11 +175,6 @@ class Model(Shown, Words, Bounded):
         return tuple(self._elements.values())
 
     @property
-    def elements(self) -> tuple[Element | Load, ...]:
-        """The same, and what the networks' edges in mechanics exert."""
-        return self.system().elements
-
-    @property
     def constraints(self) -> tuple[Constraint, ...]:
         """The constraints with edges in declared order."""
         return tuple(c for c in self._constraints.values() if isinstance(c, Constraint))
@@ -190,11 +183,6 @@ class Model(Shown, Words, Bounded):
     def relations(self) -> tuple[Relation, ...]:
         """The constraints between velocities in declared order."""
         return tuple(c for c in self._constraints.values() if isinstance(c, Relation))
-
-    @property
-    def depends_on_time(self) -> bool:
-        """Whether a prescribed motion or a law names the time t."""
-        return self.system().depends_on_time
 
     def body(
         self,
@@ -382,41 +370,3 @@ class Model(Shown, Words, Bounded):
         self._joints[joint] = locked(self, joint, value)
         for follower, at in followers_at(self, joint, value):
             self.lock(follower, at)
-
-    def system(self) -> System:
-        """What has been said until now, as a frozen system: what is said later does not reach it."""
-        return System(
-            name=self.name,
-            gravity=settled(self.gravity),
-            about=self.about,
-            snap=self.snap,
-            bodies=frozen(self.bodies),
-            ground_frames=frozen(self.ground_frames),
-            joints=settled(self.joints),
-            couplings=settled(self.couplings),
-            force_elements=settled(self.force_elements),
-            constraints=settled(self.constraints),
-            relations=settled(self.relations),
-            components=settled(self.components),
-            domains=frozen(self.domains),
-            parameters=frozen(self.parameters),
-            inputs=settled(self.inputs),
-            outputs=settled(tuple(self.outputs)),
-            choices=settled(self.choices),
-            bounds=settled(self.bounds),
-            warnings=tuple(self.warnings),
-            source=self.source,
-            places=frozen(self.places),
-        )
-
-    def terminals(self) -> dict[str, tuple[str, Placement]]:
-        """Every terminal a joint may be connected to: its body and its placement there."""
-        return terminals_of(self.system())
-
-    def graph(self) -> SystemGraph:
-        """The system graph: the union of all terminal graphs.
-
-        Raises:
-            ModelError: a component names a terminal that does not exist, or connects a body to itself.
-        """
-        return system_graph(self.system())

@@ -8,7 +8,7 @@ star with its centre in 0:
     chords     C_1 -> B_1, and for every other body j the pair C_p -> B_j (inner), C_j -> B_j (outer)
 
 Without branch 1, the basement's reaction, 2n-1 branches face 2n-1 chords. Corrected are P*, which the print
-does not define, Z_1, and B, in which translational joints are missing. Vectors are in ground axes.
+does not define, Z_1, and B, where translational joints are missing. Vectors are in ground axes.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The language as a JSON Schema, for editors that complete and check while one types.
 
-It is made from the same tables that the reader checks by; ``python -m linegraph.modelfile.schema`` writes
-the copy that is shipped.
+It is made from the same tables that the reader checks by; ``python -m linegraph.readers.modelfile.schema``
+writes the copy that is shipped.
 """
 
 from __future__ import annotations

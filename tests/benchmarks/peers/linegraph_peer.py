@@ -37,7 +37,7 @@ TOGETHER = "{name}_equations_batch({n}, x, v, M, h);"
 POINTERS = "const double *v = x + {n} * {nq}; double *M = y, *h = y + {n} * {nv} * {nv};"
 # CPU time after the interpreter has started, importing linegraph included
 INSIDE = (
-    "import sys, time; start = time.process_time(); from linegraph.cli import main; "
+    "import sys, time; start = time.process_time(); from linegraph.cli.main import main; "
     "main(sys.argv[1:], standalone_mode=False); print(time.process_time() - start)"
 )
 

@@ -1,0 +1,77 @@
+"""From the builder to the frozen system."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from linegraph.model.system import System, frozen, settled
+from linegraph.model.terminal_graphs import system_graph, terminals_of
+
+if TYPE_CHECKING:
+    from linegraph.graph.multigraph import SystemGraph
+    from linegraph.model.choices import Choices
+    from linegraph.spatial.placement import Placement
+
+
+class Snapshots:
+    """A builder of which snapshots can be taken: its attributes are those of `System`."""
+
+    name: str
+    about: str
+    snap: float
+    gravity: Any
+    bodies: Any
+    ground_frames: Any
+    joints: Any
+    couplings: Any
+    force_elements: Any
+    constraints: Any
+    relations: Any
+    components: Any
+    domains: Any
+    parameters: Any
+    inputs: Any
+    outputs: Any
+    choices: Choices
+    bounds: Any
+    warnings: list[str]
+    source: str | None
+    places: dict[str, int]
+
+    def system(self) -> System:
+        """What has been said until now, as a frozen system: what is said later does not reach it."""
+        return System(
+            name=self.name,
+            gravity=settled(self.gravity),
+            about=self.about,
+            snap=self.snap,
+            bodies=frozen(self.bodies),
+            ground_frames=frozen(self.ground_frames),
+            joints=settled(self.joints),
+            couplings=settled(self.couplings),
+            force_elements=settled(self.force_elements),
+            constraints=settled(self.constraints),
+            relations=settled(self.relations),
+            components=settled(self.components),
+            domains=frozen(self.domains),
+            parameters=frozen(self.parameters),
+            inputs=settled(self.inputs),
+            outputs=settled(tuple(self.outputs)),
+            choices=settled(self.choices),
+            bounds=settled(self.bounds),
+            warnings=tuple(self.warnings),
+            source=self.source,
+            places=frozen(self.places),
+        )
+
+    def terminals(self) -> dict[str, tuple[str, Placement]]:
+        """Every terminal a joint may be connected to: its body and its placement there."""
+        return terminals_of(self.system())
+
+    def graph(self) -> SystemGraph:
+        """The system graph: the union of all terminal graphs.
+
+        Raises:
+            ModelError: a component names a terminal that does not exist, or connects a body to itself.
+        """
+        return system_graph(self.system())
