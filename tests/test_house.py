@@ -96,12 +96,8 @@ def test_the_search_for_arrows_and_circles_finds_them(monkeypatch: pytest.Monkey
     more = (*all_imports(), up)
     monkeypatch.setattr(rooms, "all_imports", lambda: more)
     assert rooms.upward() == [up]
-    assert rooms.circles() == []  # pictures draw forests, but import none of their files
-    back = rooms.Import("linegraph.graph.multigraph", "linegraph.graph.forest", True, False)
-    monkeypatch.setattr(rooms, "all_imports", lambda: (*more, back))
-    assert ["linegraph.graph.forest", "linegraph.graph.multigraph"] in [
-        [name for name in part if name.startswith("linegraph.graph")] for part in rooms.circles()
-    ]
+    (circle,) = rooms.circles()
+    assert {up.source, up.target} <= set(circle)
 
 
 def test_the_root_is_small() -> None:

@@ -1,8 +1,7 @@
 """The paper's equations as printed, corrected: the star tree of Figs. 10 and 11 and its (1)-(15).
 
 Boiadzhiev & Lilov, "The orthogonality principle", J. Theor. Appl. Mech. (Sofia) XXIV(1), 1993. Vertices are
-the inertial frame 0, the mass centres C_1 .. C_n and a terminal B_j for each joint. The formulation tree is a
-star with its centre in 0:
+the inertial frame 0, the mass centres C_1 .. C_n and a terminal B_j for each joint. The tree is a star:
 
     branches   2k-1: 0 -> B_k    2k: 0 -> C_k
     chords     C_1 -> B_1, and for every other body j the pair C_p -> B_j (inner), C_j -> B_j (outer)
