@@ -24,8 +24,8 @@ from typing import Any
 sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[2])]
 
 import sympy  # noqa: E402
-from book_forms import double_pendulum, furuta  # noqa: E402
-from form_measures import operations  # noqa: E402
+from published.book_forms import double_pendulum, furuta  # noqa: E402
+from support.form_measures import operations  # noqa: E402
 from sympy.physics import mechanics  # noqa: E402
 
 import linegraph as lg  # noqa: E402

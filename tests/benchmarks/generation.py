@@ -65,7 +65,7 @@ def jobs(folder: Path) -> dict[str, list[str]]:
     """What is measured, by name."""
     sys.path[:0] = [str(HERE), str(HERE.parent), str(HERE.parent.parent)]
     from operations import WATCHED
-    from pinocchio_models import robots_folder
+    from oracles.pinocchio_models import robots_folder
 
     linegraph = [sys.executable, "-m", "linegraph"]
     found = {"import sympy": [sys.executable, "-c", "import sympy"]}

@@ -21,7 +21,7 @@ from typing import Any
 sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[2])]
 
 import sympy  # noqa: E402
-from linear_systems import SYSTEMS  # noqa: E402
+from support.linear_models import SYSTEMS  # noqa: E402
 from sympy.polys.matrices import DomainMatrix  # noqa: E402
 
 import linegraph as lg  # noqa: E402

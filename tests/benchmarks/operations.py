@@ -54,7 +54,7 @@ def emitted(robot: str) -> str:
     from click.testing import CliRunner
 
     sys.path[:0] = [str(Path(__file__).parent.parent), str(Path(__file__).parent.parent.parent)]
-    from pinocchio_models import robots_folder
+    from oracles.pinocchio_models import robots_folder
 
     from linegraph.cli.main import main
 
