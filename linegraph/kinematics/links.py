@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.algebra.formula import Formula
 from linegraph.algebra.scalar import Scalar
+from linegraph.components.body import LEAST_MASS
 from linegraph.components.joints import Joint
 from linegraph.components.parameters import Parameter
 from linegraph.spatial import vector
@@ -33,9 +34,6 @@ if TYPE_CHECKING:
     from linegraph.spatial.placement import Placement
 
 Resolve = Callable[[Any], Scalar]
-
-LEAST_MASS = 1e-37
-"""In kg: less is no mass, and no number with all its digits among floats."""
 
 
 @dataclass(frozen=True)
