@@ -16,10 +16,6 @@ from linegraph.spatial.rotation import IDENTITY_MATRIX, Inertia, about, from_rpy
 from linegraph.spatial.vector import ZERO, Matrix, Vector
 
 if TYPE_CHECKING:
-    from linegraph.components.body import Body
-    from linegraph.spatial.placement import Placement
-
-if TYPE_CHECKING:
     from linegraph.spatial.placement import Placement
 
 GROUND = "ground"
@@ -202,7 +198,3 @@ def principal_moments(tensor: Inertia) -> tuple[float, float, float]:
     high = mean + 2 * spread * math.cos(angle)
     low = mean + 2 * spread * math.cos(angle + 2 * math.pi / 3)
     return (low * scale, (3 * mean - high - low) * scale, high * scale)
-
-
-LEAST_MASS = 1e-37
-"""In kg: less is no mass, and no number with all its digits among floats."""

@@ -7,10 +7,11 @@ from math import sqrt
 from typing import TYPE_CHECKING
 
 from linegraph.components.body import GROUND
+from linegraph.components.body_mass import mass_center, resolved
 from linegraph.components.forces import Load
 from linegraph.errors import ModelError
 from linegraph.kinematics.ground_frames import seated
-from linegraph.kinematics.links import Seat, mass_center, resolved
+from linegraph.kinematics.links import Seat
 from linegraph.model.terminal_graphs import terminals_of
 from linegraph.numeric.loop_closure import at_some_time
 from linegraph.spatial.placement import Placement, compose

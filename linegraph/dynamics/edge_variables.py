@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.algebra.protocol import set_label
 from linegraph.components.body import GROUND, MASS_CENTER
+from linegraph.components.body_mass import mass_center
 from linegraph.components.constraints.base import Constraint
 from linegraph.components.forces import Element, Load
 from linegraph.components.parameters import resolver
@@ -23,7 +24,7 @@ from linegraph.dynamics.applied_forces import Acting
 from linegraph.dynamics.edge_quantities import NOTHING, Edge, Wrench
 from linegraph.dynamics.orthogonality import applied_to
 from linegraph.kinematics.ground_frames import GROUND_FRAME, Frame, Pair, frames, seated
-from linegraph.kinematics.links import Seat, mass_center
+from linegraph.kinematics.links import Seat
 from linegraph.model.choices import GROUND_AXES, HEAD
 from linegraph.model.terminal_graphs import terminals_of
 from linegraph.spatial.vector import (

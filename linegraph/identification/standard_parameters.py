@@ -18,10 +18,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from linegraph.components.body_mass import body_moments
 from linegraph.components.forces import Damper, Friction
 from linegraph.components.parameters import names_in, resolver
 from linegraph.ir.program import Quantity
-from linegraph.kinematics.links import body_moments
 from linegraph.spatial.inertia import NO_MOMENTS, joined
 from linegraph.spatial.placement import Placement, compose, inverse
 from linegraph.spatial.rotation import IDENTITY_MATRIX

@@ -11,10 +11,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.components.body import MASS_CENTER
+from linegraph.components.body_mass import mass_center, resolved
 from linegraph.components.joints import Fixed
 from linegraph.components.validation import nearest
 from linegraph.errors import ModelError
-from linegraph.kinematics.links import KinematicTree, Link, Seat, mass_center, resolved
+from linegraph.kinematics.links import KinematicTree, Link, Seat
 from linegraph.kinematics.state_layout import Place
 from linegraph.kinematics.working_frames import DUST, shortened
 from linegraph.model.terminal_graphs import terminals_of

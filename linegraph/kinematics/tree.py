@@ -7,19 +7,12 @@ from typing import TYPE_CHECKING
 
 from linegraph.algebra.protocol import set_label
 from linegraph.components.body import GROUND
+from linegraph.components.body_mass import body_moments, mass_center, resolved
 from linegraph.components.joints.base import TORQUES, Restriction
 from linegraph.components.parameters import resolver
 from linegraph.errors import ModelError
 from linegraph.formulation.absolute import floating, turning
-from linegraph.kinematics.links import (
-    Closure,
-    KinematicTree,
-    Link,
-    Seat,
-    body_moments,
-    mass_center,
-    resolved,
-)
+from linegraph.kinematics.links import Closure, KinematicTree, Link, Seat
 from linegraph.kinematics.state_layout import Layout, layout_of
 from linegraph.model.terminal_graphs import terminals_of
 from linegraph.spatial.inertia import NO_MOMENTS, joined

@@ -389,7 +389,7 @@ def on_inertia_edges(seed: int) -> None:
     network = base.tree.network
     if system.tree.couplings or network is None or any(base_inertia(case)):
         return
-    model = variant(mixed.model_of(system), coordinates="absolute")
+    model = variant(mixed.model_of(system).system(), coordinates="absolute")
     derivation = derive(model)
     n, m = base.first, derivation.structure.layout.mechanical
     q, v = [], []

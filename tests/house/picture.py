@@ -40,7 +40,7 @@ def arrows() -> nx.DiGraph:
 
 
 def floors(graph: nx.DiGraph) -> list[list[str]]:
-    """Packages from the ground up, each above all that it imports, those of a floor near what they stand on."""
+    """Packages from the ground up, each above all that it imports and near what it stands on."""
     level: dict[str, int] = {}
     for name in reversed(list(nx.topological_sort(graph))):
         level[name] = max((level[below] + 1 for below in graph.successors(name)), default=0)

@@ -96,7 +96,7 @@ def test_random_systems_with_networks(seed: int, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("coordinates", ["joint", "absolute-angle", "absolute"])
 def test_closed_loops_along_the_velocities_of_their_tree(coordinates: str, tmp_path: Path) -> None:
-    model = variant(modelfile.read(FOUR_BAR), coordinates=coordinates)
+    model = variant(modelfile.read(FOUR_BAR).system(), coordinates=coordinates)
     assert Emitted(model, tmp_path).defect() < EXACT
 
 
@@ -177,7 +177,7 @@ def test_friction_where_angles_are_measured_from_ground(tmp_path: Path) -> None:
     model.revolute("a", ("ground", one))
     model.revolute("b", (one.frame("tip", (0.3, 0, 0)), two))
     model.friction("f", joint="b", viscous=0.4, coulomb=0.5, width=2.0)
-    emitted = Emitted(variant(model, coordinates="absolute-angle"), tmp_path)
+    emitted = Emitted(variant(model.system(), coordinates="absolute-angle"), tmp_path)
     assert emitted.defect() < EXACT
     given = emitted.states(3)
     Y, v = emitted.call("regressor", given), given["v"]

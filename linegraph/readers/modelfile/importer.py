@@ -8,10 +8,10 @@ from pathlib import PurePath
 
 from linegraph.algebra.protocol import Floats
 from linegraph.components.body import about_one_axis, impossible
+from linegraph.components.body_mass import central_inertia
 from linegraph.components.parameters import resolver, sample_values
 from linegraph.components.scalar.branches import dangling, edges_of, projections
 from linegraph.errors import ModelError
-from linegraph.kinematics.links import central_inertia
 from linegraph.model.builder import SNAP, Model
 from linegraph.readers.modelfile.building import build
 from linegraph.readers.modelfile.document import parse_document, read_bytes
