@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from codegen.order import Step
+from codegen.order import NamedStep
 from linegraph.ir.dag import SYMBOL, Node
 from linegraph.ir.functions import ARITY
 from linegraph.ir.program import INLINE_LIMIT
@@ -39,7 +39,7 @@ class Angles:
         found = {
             x.node.a.index: x.node.a
             for x in items
-            if isinstance(x, Step)
+            if isinstance(x, NamedStep)
             and x.node.op in _WAVES
             and (wide is None or x.node.index in wide)
         }
@@ -72,14 +72,14 @@ class Angles:
         """The lines, less what only angles known elsewhere need."""
         changed = [
             x._replace(needs=())
-            if isinstance(x, Step) and self.has(x.node) and not self.comes_first(x.node)
+            if isinstance(x, NamedStep) and self.has(x.node) and not self.comes_first(x.node)
             else x
             for x in items
         ]
         needed: set[int] = set()
         kept: list[Item] = []
         for item in reversed(changed):
-            if not isinstance(item, Step) or item.node.index in needed:
+            if not isinstance(item, NamedStep) or item.node.index in needed:
                 needed.update(item.needs)
                 kept.append(item)
         return kept[::-1]
@@ -90,7 +90,7 @@ def _first_use(items: Sequence[Item], key: int) -> int:
     return next(
         x.node.index
         for x in items
-        if isinstance(x, Step) and x.node.op in _WAVES and x.node.a.index == key
+        if isinstance(x, NamedStep) and x.node.op in _WAVES and x.node.a.index == key
     )
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from codegen import declare, layout, prose, straight
-from codegen.frames import Frame
-from codegen.straight import SHARED, Kind
+from codegen.frames import StackFrame
+from codegen.straight import SHARED, NumberKind
 from linegraph.ir.functions import ARITY
 from linegraph.ir.program import PREPARED_SUFFIX, Program
 
@@ -60,9 +60,9 @@ class Batch:
     one: list[str]
 
     @property
-    def frame(self) -> Frame:
+    def frame(self) -> StackFrame:
         """What the function of many states keeps."""
-        return Frame(
+        return StackFrame(
             registers=sum(max(rows.size, 1) for rows in (*self.given, *self.found)),
             ints=1,
             parameters=1 + len(self.one),
@@ -129,7 +129,7 @@ def _made(module: Module, program: Program, statuses: dict[str, dict[int, str]])
         program.name,
         _document(module, program),
         declare.head(f"void {module.name}_{program.name}_batch(", parts),
-        straight.define(module, program, statuses, Kind(f"{module.name}_lanes", True, True)),
+        straight.define(module, program, statuses, NumberKind(f"{module.name}_lanes", True, True)),
         given,
         found,
         [*(x.name for x in program.arguments), *(x.name for x in program.results)],

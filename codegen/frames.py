@@ -22,7 +22,7 @@ MANY = 100
 
 
 @dataclass
-class Frame:
+class StackFrame:
     """A function's variables by type, and the functions that it calls, by their names after the module's.
 
     Attributes:
@@ -63,7 +63,7 @@ class Definition(NamedTuple):
     name: str
     head: str
     lines: list[str]
-    frame: Frame
+    frame: StackFrame
 
 
 class Counts(dict[str, int]):
@@ -94,68 +94,72 @@ FUNCTIONS = {
 """The functions of each helper that algorithms call."""
 
 
-def of_helpers(counts: Mapping[str, int]) -> dict[str, Frame]:
+def of_helpers(counts: Mapping[str, int]) -> dict[str, StackFrame]:
     """The functions of all helpers."""
     n, c = counts["NV"], counts["NC"]
     within = {"eliminate", "too_large"}
     found = {
-        "not_finite": Frame(ints=2, parameters=2, statements=5),
-        "parameters_not_finite": Frame(ints=1, parameters=1),
-        "copy": Frame(ints=1, parameters=3, statements=3),
-        "too_large": Frame(ints=2, parameters=2, statements=5),
-        "eliminate": Frame(doubles=4, ints=15, pointers=2, parameters=7),
-        "size_of": Frame(doubles=2, ints=1, parameters=2, statements=6),
-        "is_rounding": Frame(ints=2, parameters=3, statements=5),
-        "backward": Frame(ints=4, parameters=7),
-        "pure": Frame(doubles=2, ints=3, parameters=6),
-        "largest_of": Frame(doubles=2, ints=1, parameters=3, statements=5),
-        "least_norm": Frame(doubles=4 + c * c, ints=14, pointers=1, parameters=7),
-        "constrained": Frame(
+        "not_finite": StackFrame(ints=2, parameters=2, statements=5),
+        "parameters_not_finite": StackFrame(ints=1, parameters=1),
+        "copy": StackFrame(ints=1, parameters=3, statements=3),
+        "too_large": StackFrame(ints=2, parameters=2, statements=5),
+        "eliminate": StackFrame(doubles=4, ints=15, pointers=2, parameters=7),
+        "size_of": StackFrame(doubles=2, ints=1, parameters=2, statements=6),
+        "is_rounding": StackFrame(ints=2, parameters=3, statements=5),
+        "backward": StackFrame(ints=4, parameters=7),
+        "pure": StackFrame(doubles=2, ints=3, parameters=6),
+        "largest_of": StackFrame(doubles=2, ints=1, parameters=3, statements=5),
+        "least_norm": StackFrame(doubles=4 + c * c, ints=14, pointers=1, parameters=7),
+        "constrained": StackFrame(
             doubles=10 + 4 * (n + c) + n * c + 2 * n * n,
             ints=37 + n + c,
             parameters=16,
             calls={*within, "pure", "largest_of", "size_of", "least_norm"},
         ),
-        "determined": Frame(
+        "determined": StackFrame(
             doubles=1 + (c + n) * (n + 1) + 2 * n,
             ints=12 + c + 2 * n,
             parameters=9,
             calls={*within, "pure", "largest_of"},
         ),
-        "unit": Frame(doubles=1, ints=1, pointers=1, parameters=1),
-        "sincos": Frame(doubles=13, ints=1, parameters=3),
-        "all_sincos": Frame(ints=1, parameters=4, wide=True, calls={"sincos", "lanes_sincos"}),
-        "lanes_sincos": Frame(registers=17, ints=3, parameters=4, wide=True),
-        "turn": Frame(registers=4, ints=1, parameters=1, wide=True),
+        "unit": StackFrame(doubles=1, ints=1, pointers=1, parameters=1),
+        "sincos": StackFrame(doubles=13, ints=1, parameters=3),
+        "all_sincos": StackFrame(ints=1, parameters=4, wide=True, calls={"sincos", "lanes_sincos"}),
+        "lanes_sincos": StackFrame(registers=17, ints=3, parameters=4, wide=True),
+        "turn": StackFrame(registers=4, ints=1, parameters=1, wide=True),
         **dict.fromkeys(("gather", "scatter"), _rows()),
     }
-    found |= {f"{name}_of": Frame(parameters=2, statements=1) for name in ("sign", "min", "max")}
+    found |= {
+        f"{name}_of": StackFrame(parameters=2, statements=1) for name in ("sign", "min", "max")
+    }
     return found | {
-        f"lanes_{name}": Frame(ints=1, parameters=2, wide=True, calls={f"{name}_of"})
+        f"lanes_{name}": StackFrame(ints=1, parameters=2, wide=True, calls={f"{name}_of"})
         for name in ARITY
     }
 
 
-def _rows() -> Frame:
-    return Frame(registers=8, ints=3, parameters=4, wide=True, calls={"turn"})
+def _rows() -> StackFrame:
+    return StackFrame(registers=8, ints=3, parameters=4, wide=True, calls={"turn"})
 
 
-Made = Callable[[Counts, "dict[str, object]"], Frame]
+Made = Callable[[Counts, "dict[str, object]"], StackFrame]
 
 _ROUTINES: dict[str, Made] = {
-    "after_dynamics": lambda n, _: Frame(doubles=n["NV"] + 1 + n["NC"], ints=1),
-    "rhs": lambda n, _: Frame(doubles=n["NC"]),
-    "constrained_dynamics": lambda n, _: Frame(
+    "after_dynamics": lambda n, _: StackFrame(doubles=n["NV"] + 1 + n["NC"], ints=1),
+    "rhs": lambda n, _: StackFrame(doubles=n["NC"]),
+    "constrained_dynamics": lambda n, _: StackFrame(
         doubles=17 + n["NV"] * (n["NV"] + 2 * n["NC"] + 6) + 9 * n["NC"] + n["NP"] + 2 * n["NQ"],
         ints=14,
     ),
     "reduction": lambda n, _: _of_reduction(n),
-    "reduced_equations": lambda n, _: Frame(doubles=1 + n["NV"] * (n["NV"] + n["NI"] + 2), ints=9),
-    "complete": lambda n, _: Frame(
+    "reduced_equations": lambda n, _: StackFrame(
+        doubles=1 + n["NV"] * (n["NV"] + n["NI"] + 2), ints=9
+    ),
+    "complete": lambda n, _: StackFrame(
         doubles=4 + 2 * n["NQ"] + n["NV"] * (n["NC"] + 3) + 3 * n["NC"] + n["NI"] + n["NP"],
         ints=11,
     ),
-    "project": lambda n, _: Frame(
+    "project": lambda n, _: StackFrame(
         doubles=5 + 3 * n["NQ"] + n["NV"] * (n["NV"] + n["NC"] + 3) + 3 * n["NC"] + n["NP"],
         ints=11,
     ),
@@ -167,7 +171,7 @@ _ROUTINES: dict[str, Made] = {
 
 def of_routine(
     routine: Routine, counts: Mapping[str, int], helpers: Iterable[str], statements: int
-) -> Frame:
+) -> StackFrame:
     """The record of a function whose algorithm is a template, written in so many statements.
 
     Args:
@@ -183,22 +187,22 @@ def of_routine(
     return frame
 
 
-def _of_reduction(n: Counts) -> Frame:
+def _of_reduction(n: Counts) -> StackFrame:
     v, c, i = n["NV"], n["NC"], n["NI"]
     sides = (v + c + i) * (2 * i + 3)
-    return Frame(doubles=14 + 2 * c * v + 4 * c + v + sides + n["NP"] + 2 * n["NQ"], ints=16)
+    return StackFrame(doubles=14 + 2 * c * v + 4 * c + v + sides + n["NP"] + 2 * n["NQ"], ints=16)
 
 
-def _of_linearization(n: Counts, free: int) -> Frame:
+def _of_linearization(n: Counts, free: int) -> StackFrame:
     v, c, i, t = n["NV"], n["NC"], n["NI"], n["NT"]
     width, sides = t + v + n["NU"], n["NDX"] + n["NU"]
     vectors = 6 * v + 5 * c + width
     matrices = v * v + c * v + (v + c) * width + c * t + t * t + v * i
-    return Frame(
+    return StackFrame(
         doubles=5 + vectors + matrices + (v + c + free) * free + (v + c + i) * free + i * sides,
         ints=21,
     )
 
 
-def _of_newton(size: int) -> Frame:
-    return Frame(doubles=8 + size * size + 6 * size, ints=22 + 2 * size)
+def _of_newton(size: int) -> StackFrame:
+    return StackFrame(doubles=8 + size * size + 6 * size, ints=22 + 2 * size)

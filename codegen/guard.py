@@ -10,7 +10,7 @@ import math
 from typing import TYPE_CHECKING
 
 from codegen import declare, failures, frames, layout, routines
-from codegen.frames import FUNCTIONS, Definition, Frame
+from codegen.frames import FUNCTIONS, Definition, StackFrame
 from linegraph.ir.statuses import NOT_FINITE, NOT_FINITE_INPUT
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def definition(
 ) -> Definition:
     """A function that reports a status."""
     lines = _lines(module, program)
-    frame = Frame(
+    frame = StackFrame(
         doubles=sum(math.prod(result.shape) for result in program.results),
         ints=2,
         parameters=len(program.arguments) + len(program.results),

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _PARTNERS = {"sin": "cos", "cos": "sin"}
 
 
-class Step(NamedTuple):
+class NamedStep(NamedTuple):
     """A node gets a name; `needs` are the indices of the named nodes it is computed from."""
 
     node: Node
@@ -47,14 +47,16 @@ class Guard(NamedTuple):
     cost: int
 
 
-Item = Step | Entry | Guard
+Item = NamedStep | Entry | Guard
 
 
 def arranged(program: Program, forced: Iterable[Node]) -> list[Item]:
     """All lines of a program in order; the nodes `forced` get a name in any case."""
     named = {node.index: node for node in program.steps}
     named |= {node.index: node for node in forced}
-    steps = {index: Step(named[index], *_read_by(named[index], named)) for index in sorted(named)}
+    steps = {
+        index: NamedStep(named[index], *_read_by(named[index], named)) for index in sorted(named)
+    }
     order = [steps[index] for index in _together(_ordered(list(steps.values())), named)]
     guards = []
     for check in program.checks:
@@ -97,7 +99,7 @@ def _reads(
     return needs, cost
 
 
-def _ordered(steps: Sequence[Step]) -> list[int]:
+def _ordered(steps: Sequence[NamedStep]) -> list[int]:
     """The indices of all named nodes: blocks of one label, each right before the first that needs it."""
     blocks: list[list[int]] = []
     needs: list[set[int]] = []
@@ -147,7 +149,7 @@ def _together(order: Sequence[int], named: dict[int, Node]) -> list[int]:
     return found
 
 
-def _placed(order: list[Step], guards: list[Guard], entries: list[Entry]) -> list[Item]:
+def _placed(order: list[NamedStep], guards: list[Guard], entries: list[Entry]) -> list[Item]:
     """Checks as early as can be; entries, too, but none before the last check; constants at the end."""
     at = {step.node.index: place for place, step in enumerate(order)}
     after: dict[int, list[Item]] = {}

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from codegen.order import Step
+from codegen.order import NamedStep
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -25,7 +25,7 @@ _SPREAD = 0.3
 
 
 @dataclass(frozen=True)
-class Part:
+class CodePart:
     """Some lines in a row.
 
     Attributes:
@@ -40,25 +40,25 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Places:
+class WorkingPlaces:
     """Where the values that go from part to part are kept: a place for each node, and how many places."""
 
     of: dict[int, int]
     count: dict[str, int]
 
 
-def cut(items: Sequence[Item]) -> list[Part]:
+def cut(items: Sequence[Item]) -> list[CodePart]:
     """The lines in parts of about equal size; one part if there are not many."""
     cuts = _cuts(items, SIZE)
     if not cuts:
-        return [Part(items, frozenset(), frozenset())]
+        return [CodePart(items, frozenset(), frozenset())]
     starts = [0, *cuts, len(items)]
     slices = [items[a:b] for a, b in pairwise(starts)]
     home = {
         item.node.index: number
         for number, lines in enumerate(slices)
         for item in lines
-        if isinstance(item, Step)
+        if isinstance(item, NamedStep)
     }
     given = [
         frozenset(x for item in lines for x in item.needs if home[x] != number)
@@ -66,18 +66,18 @@ def cut(items: Sequence[Item]) -> list[Part]:
     ]
     needed = frozenset().union(*given)
     return [
-        Part(
+        CodePart(
             lines,
             given[number],
             frozenset(
-                x.node.index for x in lines if isinstance(x, Step) and x.node.index in needed
+                x.node.index for x in lines if isinstance(x, NamedStep) and x.node.index in needed
             ),
         )
         for number, lines in enumerate(slices)
     ]
 
 
-def places(parts: Sequence[Part], kind: Callable[[int], str]) -> Places:
+def places(parts: Sequence[CodePart], kind: Callable[[int], str]) -> WorkingPlaces:
     """A place for every value that goes from part to part, of its kind.
 
     A part writes no place that it reads, so that the order of its lines does not matter for places.
@@ -88,7 +88,7 @@ def places(parts: Sequence[Part], kind: Callable[[int], str]) -> Places:
     of: dict[int, int] = {}
     for number, part in enumerate(parts):
         for item in part.items:
-            if not isinstance(item, Step) or item.node.index not in part.kept:
+            if not isinstance(item, NamedStep) or item.node.index not in part.kept:
                 continue
             index = item.node.index
             own = kind(index)
@@ -100,7 +100,7 @@ def places(parts: Sequence[Part], kind: Callable[[int], str]) -> Places:
         for index in sorted(part.given, reverse=True):
             if last[index] == number:
                 free.setdefault(kind(index), []).append(of[index])
-    return Places(of, count)
+    return WorkingPlaces(of, count)
 
 
 def _cuts(items: Sequence[Item], size: int) -> list[int]:
@@ -132,7 +132,7 @@ def _alive(items: Sequence[Item]) -> list[int]:
     last = {x: place for place, item in enumerate(items) for x in item.needs}
     change = [0] * (len(items) + 2)
     for place, item in enumerate(items):
-        if isinstance(item, Step) and item.node.index in last:
+        if isinstance(item, NamedStep) and item.node.index in last:
             change[place + 1] += 1
             change[last[item.node.index] + 1] -= 1
     alive = [0]

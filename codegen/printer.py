@@ -2,7 +2,7 @@
 
 Languages of C's family agree on ``+ - * /``, their precedence and left-to-right grouping, so one
 printer serves them all, and the value and order of evaluation are the same in each. Parentheses
-stand exactly where the grouping needs them. What differs between languages is said by a `Notation`.
+stand exactly where the grouping needs them. What differs between languages is said by a `Syntax`.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _MIXED: dict[int, tuple[int, ...]] = {_SIGNED: (_SUM, _PRODUCT), _SUM: (_PRODUCT
 
 
 @dataclass(frozen=True)
-class Notation:
+class Syntax:
     """How a language writes what languages write differently.
 
     Attributes:
@@ -65,7 +65,7 @@ class Notation:
 
 
 @dataclass(frozen=True)
-class Body:
+class PrintedBody:
     """A printed program.
 
     Attributes:
@@ -95,12 +95,12 @@ def number(x: Number) -> str:
     return repr(value)
 
 
-def print_program(program: Program, notation: Notation) -> Body:
+def print_program(program: Program, notation: Syntax) -> PrintedBody:
     """All lines of a program in one language."""
     printer = Printer(program, notation)
     lines = printer.assignments(program)
     results = [[printer.text(x) for x in result.entries] for result in program.results]
-    return Body(lines, results, frozenset(printer.used))
+    return PrintedBody(lines, results, frozenset(printer.used))
 
 
 class Printer:
@@ -109,7 +109,7 @@ class Printer:
     Methods call each other only for nodes without a name, whose depth `INLINE_LIMIT` bounds.
     """
 
-    def __init__(self, program: Program, notation: Notation) -> None:
+    def __init__(self, program: Program, notation: Syntax) -> None:
         """Nothing is known before the first line."""
         self.notation = notation
         self.mixed = _MIXED if notation.bracketed else _BARE

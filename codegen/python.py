@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from codegen import failures, layout, prose, real, routines, straight, templates
 from codegen.options import DEFAULT
-from codegen.printer import Notation, number, print_program
+from codegen.printer import Syntax, number, print_program
 from linegraph.ir.functions import ARITY
 from linegraph.ir.program import Program, Routine
 
@@ -190,7 +190,7 @@ def _sizes(program: Program | Routine) -> str:
     return ", ".join(str(math.prod(result.shape)) for result in program.results) + ","
 
 
-def _body(module: Module, program: Program | Routine, notation: Notation) -> list[str]:
+def _body(module: Module, program: Program | Routine, notation: Syntax) -> list[str]:
     """The lines of a private function: arguments and results are lists of components."""
     if program.handed:
         return routines.handed(module, program, _DIALECT)
@@ -268,7 +268,7 @@ def _is_smooth(program: Program) -> bool:
     return not kinked or straight.varying(program, live).isdisjoint(kinked)
 
 
-def _notation(module: Module) -> Notation:
+def _notation(module: Module) -> Syntax:
     """How Python writes expressions and checks."""
     constants = failures.constants(module)
 
@@ -279,7 +279,7 @@ def _notation(module: Module) -> Notation:
             f"        raise StatusError({literal(name)})",
         ]
 
-    return Notation(
+    return Syntax(
         before="    ",
         after="",
         member="p.",

@@ -10,7 +10,7 @@ import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from codegen import failures, frames, layout, templates
-from codegen.frames import Frame
+from codegen.frames import StackFrame
 from linegraph.ir.program import PREPARED_SUFFIX, Routine
 from linegraph.ir.statuses import NOT_FINITE_INPUT
 
@@ -116,15 +116,15 @@ def body(
     return lines
 
 
-def frame(module: Module, routine: Routine, lines: Sequence[str]) -> Frame:
+def frame(module: Module, routine: Routine, lines: Sequence[str]) -> StackFrame:
     """What a routine with these lines keeps on the stack in C."""
     shared = [x for x in HELPERS[routine.algorithm] if x != "unit" or quaternions(module)]
     return frames.of_routine(routine, layout.counts(module), shared, frames.statements(lines))
 
 
-def handed_frame(module: Module, program: Program | Routine, lines: Sequence[str]) -> Frame:
+def handed_frame(module: Module, program: Program | Routine, lines: Sequence[str]) -> StackFrame:
     """What a function keeps there that hands its work on."""
-    return Frame(
+    return StackFrame(
         doubles=frames.Counts(layout.counts(module))["NK"],
         parameters=len(program.arguments) + len(program.results),
         statements=frames.statements(lines),

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from codegen.frames import Frame
+    from codegen.frames import StackFrame
 
 CALL = 32
 """Bytes of every call: the return address, the frame's, alignment."""
@@ -30,7 +30,7 @@ _REGISTER = 64
 """Bytes of the longest vector register."""
 
 
-def bounds(frames: Mapping[str, Frame], real: str = "double") -> dict[str, int]:
+def bounds(frames: Mapping[str, StackFrame], real: str = "double") -> dict[str, int]:
     """Bytes of stack that each function takes at most, with all that it calls but <math.h>.
 
     Args:
@@ -49,13 +49,13 @@ def bounds(frames: Mapping[str, Frame], real: str = "double") -> dict[str, int]:
     return {name: depth(name) for name in frames}
 
 
-def variables(frame: Frame, real: str = "double") -> int:
+def variables(frame: StackFrame, real: str = "double") -> int:
     """Bytes of a function's variables."""
     numbers = frame.doubles * _BYTES[real] + frame.ints * _INT
     return numbers + frame.pointers * _WORD + frame.registers * _REGISTER
 
 
-def own(frame: Frame, real: str = "double") -> int:
+def own(frame: StackFrame, real: str = "double") -> int:
     """Bytes of one function alone."""
     arguments = _WORD * max(frame.parameters, 1)
     if frame.wide:

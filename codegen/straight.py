@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 from codegen import declare, failures, real
 from codegen.angles import Angles
-from codegen.frames import Definition, Frame
-from codegen.order import Entry, Guard, Step, arranged, paired
+from codegen.frames import Definition, StackFrame
+from codegen.order import Entry, Guard, NamedStep, arranged, paired
 from codegen.parts import cut, places
-from codegen.printer import Notation, Printer, number
+from codegen.printer import Printer, Syntax, number
 from linegraph.ir.dag import SYMBOL, Node
 from linegraph.ir.functions import ARITY
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from codegen.order import Item
-    from codegen.parts import Part
+    from codegen.parts import CodePart
     from linegraph.ir.dag import Operand
     from linegraph.ir.program import Argument, Call, Check, Module, Program
 
@@ -34,7 +34,7 @@ SHARED = ("p", "c", "t")
 
 
 @dataclass(frozen=True)
-class Kind:
+class NumberKind:
     """What the numbers of a function are.
 
     Attributes:
@@ -58,7 +58,7 @@ def function(module: Module, name: str) -> str:
 
 
 def define(
-    module: Module, program: Program, statuses: dict[str, dict[int, str]], kind: Kind
+    module: Module, program: Program, statuses: dict[str, dict[int, str]], kind: NumberKind
 ) -> list[Definition]:
     """A function, after the parts it calls if it is long."""
     return _Writer(module, program, statuses, kind).definitions()
@@ -68,7 +68,11 @@ class _Writer:
     """Writes one program; `printer` and `count` go through its parts in order."""
 
     def __init__(
-        self, module: Module, program: Program, statuses: dict[str, dict[int, str]], kind: Kind
+        self,
+        module: Module,
+        program: Program,
+        statuses: dict[str, dict[int, str]],
+        kind: NumberKind,
     ) -> None:
         self.module, self.program, self.statuses, self.kind = module, program, statuses, kind
         self.prefix, self.macro = module.name, module.name.upper()
@@ -100,9 +104,9 @@ class _Writer:
         """The type of a node with a name."""
         return self.kind.number if not self.kind.wide or index in self.wide else "double"
 
-    def begun(self) -> Frame:
+    def begun(self) -> StackFrame:
         """The record of a function."""
-        return Frame(statements=0, wide=self.kind.wide, calls=set(self.own))
+        return StackFrame(statements=0, wide=self.kind.wide, calls=set(self.own))
 
     def definitions(self) -> list[Definition]:
         """All functions, the public one last."""
@@ -184,7 +188,7 @@ class _Writer:
 
     # ---- parts
 
-    def split(self, parts: Sequence[Part]) -> tuple[list[str], list[Definition]]:
+    def split(self, parts: Sequence[CodePart]) -> tuple[list[str], list[Definition]]:
         """The lines that call the parts, and the parts."""
         found = places(parts, self.type_of)
         arrays = {
@@ -215,7 +219,7 @@ class _Writer:
 
     def parameters(
         self,
-        part: Part,
+        part: CodePart,
         read: set[str],
         of: dict[int, str],
         count: dict[str, int],
@@ -235,7 +239,7 @@ class _Writer:
                 declared[name] = f"{type_} {name}[{self.macro}_RESTRICT {size}]"
             elif any(of[x].startswith(f"{name}[") for x in part.given):
                 declared[name] = f"const {type_} {name}[{size}]"
-        waves = [x.node for x in part.items if isinstance(x, Step) if self.angles.has(x.node)]
+        waves = [x.node for x in part.items if isinstance(x, NamedStep) if self.angles.has(x.node)]
         late = any(map(self.angles.comes_first, waves))
         for name, op in (("sines", "sin"), ("cosines", "cos")):
             if late or any(node.op == op for node in waves):
@@ -248,7 +252,7 @@ class _Writer:
 
     # ---- lines
 
-    def lines(self, part: Part, of: dict[int, str]) -> list[str]:
+    def lines(self, part: CodePart, of: dict[int, str]) -> list[str]:
         """The lines of a part: what earlier parts have kept is read right before it is needed."""
         known = self.printer.known
         missing = set(part.given)
@@ -256,7 +260,7 @@ class _Writer:
         label = ""
         self.zero = False
         for item in part.items:
-            now = item.node.label if isinstance(item, Step) else label or "results"
+            now = item.node.label if isinstance(item, NamedStep) else label or "results"
             if now != label:
                 label = now
                 lines.append(self.notation.comment(label or "no element"))
@@ -265,7 +269,7 @@ class _Writer:
                     missing.remove(index)
                     lines.append(f"    const {self.type_of(index)} {known[index]} = {of[index]};")
                     self.frame.add(self.type_of(index))
-            if isinstance(item, Step):
+            if isinstance(item, NamedStep):
                 name = f"t{self.count}"
                 self.count += 1
                 self.frame.name(self.type_of(item.node.index))
@@ -375,7 +379,7 @@ def _called(call: str, may_fail: bool, ok: str) -> list[str]:
     ]
 
 
-def _notation(module: Module, kind: Kind) -> Notation:
+def _notation(module: Module, kind: NumberKind) -> Syntax:
     """How C writes expressions and checks."""
     named = {key: constant for key, (constant, _) in failures.constants(module).items()}
 
@@ -387,7 +391,7 @@ def _notation(module: Module, kind: Kind) -> Notation:
             "    }",
         ]
 
-    return Notation(
+    return Syntax(
         before="    const double ",
         after=";",
         member="p->",

@@ -12,30 +12,49 @@ from typing import TYPE_CHECKING, Any
 from linegraph.version import __version__
 
 if TYPE_CHECKING:
-    from linegraph.components.parameters import Parameter
+    from linegraph.components.parameters import Input, Parameter
     from linegraph.derivation import Derivation, derive
+    from linegraph.drawing.scene import Scene
     from linegraph.emission.emit import emit
     from linegraph.errors import LinegraphError, ModelError, NameRefused, SourceError
+    from linegraph.evaluation import Function
+    from linegraph.identification.base_parameters import BaseParameters
     from linegraph.model.builder import Model
+    from linegraph.model.system import System
     from linegraph.notation import init_printing
+    from linegraph.numeric.assembly import Assembly
     from linegraph.readers.read import read
+    from linegraph.symbolic.closed_forms import ClosedForms
+    from linegraph.symbolic.equation_list import Equations
     from linegraph.symbolic.simplify import simplify
+    from linegraph.symbolic.state_space import StateSpace
+    from linegraph.verification.checking.run import check
 
 _MODULES = {
+    "Assembly": "numeric.assembly",
+    "BaseParameters": "identification.base_parameters",
+    "ClosedForms": "symbolic.closed_forms",
     "Derivation": "derivation",
+    "Equations": "symbolic.equation_list",
+    "Function": "evaluation",
+    "Input": "components.parameters",
     "LinegraphError": "errors",
     "Model": "model.builder",
     "ModelError": "errors",
     "NameRefused": "errors",
     "Parameter": "components.parameters",
+    "Scene": "drawing.scene",
     "SourceError": "errors",
+    "StateSpace": "symbolic.state_space",
+    "System": "model.system",
+    "check": "verification.checking.run",
     "derive": "derivation",
     "emit": "emission.emit",
     "init_printing": "notation",
     "read": "readers.read",
     "simplify": "symbolic.simplify",
 }
-"""The module of each name that is exported."""
+"""The module of each public name."""
 
 
 def __getattr__(name: str) -> Any:
@@ -51,14 +70,24 @@ def __dir__() -> list[str]:
 
 
 __all__ = [
+    "Assembly",
+    "BaseParameters",
+    "ClosedForms",
     "Derivation",
+    "Equations",
+    "Function",
+    "Input",
     "LinegraphError",
     "Model",
     "ModelError",
     "NameRefused",
     "Parameter",
+    "Scene",
     "SourceError",
+    "StateSpace",
+    "System",
     "__version__",
+    "check",
     "derive",
     "emit",
     "init_printing",

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from linegraph.identification.base_parameters import BaseParameters
     from linegraph.model.builder import Model
     from linegraph.model.system import System
-    from linegraph.symbolic.closed_forms import Symbolic
+    from linegraph.symbolic.closed_forms import ClosedForms
     from linegraph.symbolic.equation_list import Equations
     from linegraph.symbolic.state_space import StateSpace
 
@@ -55,7 +55,7 @@ class Derivation(Derived, Displayed):
     """
 
     @cached_property
-    def symbolic(self) -> Symbolic:
+    def symbolic(self) -> ClosedForms:
         """The closed forms, simplified in full."""
         return self.closed_form()
 
@@ -65,7 +65,7 @@ class Derivation(Derived, Displayed):
         *,
         budget: int | None = None,
         progress: Callable[[str], None] | None = None,
-    ) -> Symbolic:
+    ) -> ClosedForms:
         """All closed forms at one level of simplification.
 
         Args:
@@ -77,10 +77,10 @@ class Derivation(Derived, Displayed):
         Raises:
             ModelError: there is no such level.
         """
-        from linegraph.symbolic.closed_forms import Symbolic
+        from linegraph.symbolic.closed_forms import ClosedForms
         from linegraph.symbolic.simplification import BUDGET
 
-        return Symbolic(self, level, BUDGET if budget is None else budget, progress)
+        return ClosedForms(self, level, BUDGET if budget is None else budget, progress)
 
     # -- symbols
 

@@ -205,7 +205,7 @@ _STEEP: dict[str, Callable[[Dag, Node], Scalar]] = {
 """Functions whose slope is infinite at the end of their range, with what it is divided by."""
 
 
-class Sizes:
+class TermSizes:
     """The size of the terms that scalars are sums of: what rounding errors are in proportion to.
 
     Example:

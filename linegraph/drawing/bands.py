@@ -28,7 +28,7 @@ FINE = 16
 """Places are calculated in this fraction of a unit."""
 
 
-class Link(NamedTuple):
+class BandLink(NamedTuple):
     """What connects a port of a thing with one in the band above; `weight` is how straight it shall be."""
 
     low: int
@@ -65,7 +65,7 @@ class Bands:
         links: between neighbouring bands.
     """
 
-    def __init__(self, cells: Sequence[Cell], links: Sequence[Link]) -> None:
+    def __init__(self, cells: Sequence[Cell], links: Sequence[BandLink]) -> None:
         """Nothing is ordered yet."""
         self.apart: Mapping[tuple[int, int], int] = {}
         self.cells = cells
@@ -74,8 +74,8 @@ class Bands:
         ]
         for k, cell in enumerate(cells):
             self.rows[cell.band].append(k)
-        self.above: list[list[Link]] = [[] for _ in cells]
-        self.below: list[list[Link]] = [[] for _ in cells]
+        self.above: list[list[BandLink]] = [[] for _ in cells]
+        self.below: list[list[BandLink]] = [[] for _ in cells]
         for link in links:
             self.above[link.low].append(link)
             self.below[link.high].append(link)

@@ -46,7 +46,7 @@ ARM = Pen(FAINT, 1)
 
 
 @dataclass
-class Body:
+class BodyArea:
     """What is known of a body before it is drawn.
 
     Attributes:
@@ -77,7 +77,7 @@ class Shape:
     info: int
 
 
-def shape(body: Body, ports: Sequence[str]) -> Shape:
+def shape(body: BodyArea, ports: Sequence[str]) -> Shape:
     """Lay out a body's vertices, in the order given, and its name.
 
     Rows end at the stem's root, so that a vertex above and one below stand in one line.
@@ -121,7 +121,7 @@ def _aligned(
     }
 
 
-def drawn(body: Body, shape: Shape) -> tuple[list[Item], list[Item]]:
+def drawn(body: BodyArea, shape: Shape) -> tuple[list[Item], list[Item]]:
     """The region with its arms, and what stands above edges; from the upper left corner."""
     name = short(body.name)
     region = Region(0, 0, shape.width, HEIGHT, 10, Pen(EDGE_OF_TINT, 1), TINT)
@@ -150,7 +150,7 @@ def _arm(hub: tuple[int, int], end: tuple[int, int]) -> Stroke:
     return Stroke(hub, (((x + r, hub[1]),), corner, (end,)), ARM)
 
 
-def _vertex(body: Body, vertex: str, x: int, y: int) -> Part:
+def _vertex(body: BodyArea, vertex: str, x: int, y: int) -> Part:
     label = body.label(vertex)
     items: list[Item] = [Disc(x, y, 3.2, None, INK)]
     if label:
@@ -178,7 +178,7 @@ def quartered(x: float, y: float, r: float) -> tuple[Item, ...]:
     )
 
 
-def _inertia(body: Body, hub: tuple[int, int]) -> Part:
+def _inertia(body: BodyArea, hub: tuple[int, int]) -> Part:
     """The inertia edge: from a ground sign to the mass centre."""
     from linegraph.drawing.looks import BRANCH_PEN, CHORD_PEN
 

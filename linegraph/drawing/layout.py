@@ -11,8 +11,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from linegraph.components.body import GROUND
-from linegraph.drawing.bands import GAP, Bands, Cell, Link
-from linegraph.drawing.bodies import HEIGHT, Body, Shape, shape
+from linegraph.drawing.bands import GAP, BandLink, Bands, Cell
+from linegraph.drawing.bodies import HEIGHT, BodyArea, Shape, shape
 from linegraph.drawing.letters import short, width
 from linegraph.drawing.looks import is_arm, is_inertia
 from linegraph.drawing.scene import NORMAL, SMALL
@@ -68,7 +68,7 @@ class Plan:
         floors, ceilings: of each band.
     """
 
-    bodies: dict[str, Body] = field(default_factory=dict)
+    bodies: dict[str, BodyArea] = field(default_factory=dict)
     shapes: dict[str, Shape] = field(default_factory=dict)
     node: dict[str, str] = field(default_factory=dict)
     layer: dict[str, int] = field(default_factory=dict)
@@ -109,7 +109,7 @@ def _gather(found: Plan, projection: Projection, branches: frozenset[str]) -> No
     """Bodies, their frames, and what each vertex belongs to."""
     for edge in projection.edges:
         if is_arm(edge) and edge.component != GROUND:
-            body = found.bodies.setdefault(edge.component, Body(edge.component))
+            body = found.bodies.setdefault(edge.component, BodyArea(edge.component))
             body.center = edge.tail
             body.arms[edge.head] = edge
             found.node[edge.tail] = found.node[edge.head] = edge.component
@@ -189,7 +189,7 @@ class _Making:
         self.found, self.branches = found, branches
         self.place = {name: k for k, name in enumerate(found.layer)}
         self.made: list[tuple[tuple[int, ...], Cell]] = []
-        self.links: list[Link] = []
+        self.links: list[BandLink] = []
         self.arches: dict[tuple[str, str], int] = {}
 
     def add(self, cell: Cell, *key: int) -> int:
@@ -229,7 +229,7 @@ class _Making:
         cells.append(self._end(high, key, k))
         for (a, pa), (b, pb) in pairwise(cells):
             lanes = pa == "" and pb == ""
-            self.links.append(Link(a, pa, b, pb, STRAIGHT if lanes else weight))
+            self.links.append(BandLink(a, pa, b, pb, STRAIGHT if lanes else weight))
         self.found.routes.append(Route(edge, upward, cells, len(cells) - 2))
         _note_ends(self.found, low, high, arch=False)
 
@@ -245,7 +245,7 @@ class _Making:
         cell = self.arches[ends]
         cells = [self._end(low, key, k), (cell, "low"), (cell, "high"), self._end(high, key, k)]
         for end, side in ((cells[0], "low"), (cells[3], "high")):
-            self.links.append(Link(*end, cell, side, 1))
+            self.links.append(BandLink(*end, cell, side, 1))
         route = Route(edge, low == edge.tail, cells, 1, self.found.piles[cell])
         self.found.piles[cell] += 1
         self.found.routes.append(route)
@@ -258,7 +258,7 @@ class _Making:
         return self.found.cell[self.found.node[vertex]], vertex
 
 
-def _cells(found: Plan, outer: list[Edge], branches: frozenset[str]) -> list[Link]:
+def _cells(found: Plan, outer: list[Edge], branches: frozenset[str]) -> list[BandLink]:
     """A cell for each body, vertex and lane, in the order of the walk, and the links between them."""
     making = _Making(found, branches)
     making.nodes()
@@ -268,8 +268,8 @@ def _cells(found: Plan, outer: list[Edge], branches: frozenset[str]) -> list[Lin
 
 
 def _sorted_cells(
-    found: Plan, made: list[tuple[tuple[int, ...], Cell]], links: list[Link]
-) -> list[Link]:
+    found: Plan, made: list[tuple[tuple[int, ...], Cell]], links: list[BandLink]
+) -> list[BandLink]:
     """Bring the cells into the order of the walk, which has few crossings from the start."""
     order = sorted(range(len(made)), key=lambda k: made[k][0])
     new = {old: k for k, old in enumerate(order)}
@@ -334,7 +334,7 @@ def _measure_arch(found: Plan, k: int) -> None:
         found.apart[(a, b)] = found.apart[(b, a)] = 2 * cell.left + GAP
 
 
-def _set_heights(found: Plan, links: list[Link]) -> None:
+def _set_heights(found: Plan, links: list[BandLink]) -> None:
     """Heights of bands and of the zones between them, which are higher where lines bend far."""
     count = 1 + max((cell.band for cell in found.cells), default=0)
     heights = [LABEL_BAND if band % 2 else 0 for band in range(count)]

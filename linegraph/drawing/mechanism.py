@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from linegraph.drawing.bodies import quartered
 from linegraph.drawing.letters import clean, width
 from linegraph.drawing.outline import distance2, far, hull_of, inside
-from linegraph.drawing.poses import GROUND_LINK, Place, Poses, Tie, poses
+from linegraph.drawing.poses import GROUND_LINK, JointPose, Poses, TiePose, poses
 from linegraph.drawing.scene import (
     ACCENT,
     GREY,
@@ -167,7 +167,7 @@ class Sketch(Stand):
         body = Part("body", ", ".join(bodies), tuple(shape), "fixed to ground")
         return [body, Part("ground", "ground", tuple(self._ground(foot, True)), "the reference")]
 
-    def _support(self, place: Place) -> list[Item]:
+    def _support(self, place: JointPose) -> list[Item]:
         """Ground at a joint, on the side where its link is not."""
         (x, y), axis = self.at[place.joint.name], self.along(place.axis)
         length = sqrt(axis[0] * axis[0] + axis[1] * axis[1])
@@ -344,7 +344,7 @@ def _shifted(point: Point, a: Point, b: Point, beside: float) -> Point:
     return (tenth(point[0] - dy / length * beside), tenth(point[1] + dx / length * beside))
 
 
-def _in_words(tie: Tie) -> str:
+def _in_words(tie: TiePose) -> str:
     return f"{'port' if tie.kind == 'edge' else tie.kind} in {tie.joint}"
 
 

@@ -29,7 +29,7 @@ GROUND_LINK = -1
 
 
 @dataclass(frozen=True)
-class Place:
+class JointPose:
     """A joint where it stands.
 
     Attributes:
@@ -46,7 +46,7 @@ class Place:
 
 
 @dataclass(frozen=True)
-class Tie:
+class TiePose:
     """A force element, a constraint or a load where it stands.
 
     Attributes:
@@ -81,9 +81,9 @@ class Poses:
     links: dict[int, list[str]] = field(default_factory=dict)
     origins: dict[str, Vector] = field(default_factory=dict)
     centers: dict[int, Vector] = field(default_factory=dict)
-    joints: list[Place] = field(default_factory=list)
+    joints: list[JointPose] = field(default_factory=list)
     welds: list[str] = field(default_factory=list)
-    ties: list[Tie] = field(default_factory=list)
+    ties: list[TiePose] = field(default_factory=list)
     upward: Vector | None = None
 
 
@@ -150,15 +150,15 @@ def _gathered(derivation: Derived, numeric: Numeric, q: Sequence[float]) -> Pose
         axis = transpose(tail.rotation)[2]
         links = (end.tail.link, end.head.link)
         found.joints.append(
-            Place(joint, links, _floats(tail.origin), _floats(head.origin), _floats(axis))
+            JointPose(joint, links, _floats(tail.origin), _floats(head.origin), _floats(axis))
         )
     found.ties = _ties(derivation, numeric, chords, {p.joint.name: p for p in found.joints})
     return found
 
 
 def _ties(
-    derivation: Derived, numeric: Numeric, chords: Chords, joints: Mapping[str, Place]
-) -> list[Tie]:
+    derivation: Derived, numeric: Numeric, chords: Chords, joints: Mapping[str, JointPose]
+) -> list[TiePose]:
     """Force elements, constraints and loads."""
     model = derivation.system
     terminals = terminals_of(model)
@@ -175,16 +175,18 @@ def _ties(
     for element in model.elements:
         if isinstance(element, Load):
             link, place = end(element.at)
-            ties.append(Tie(element.name, element.kind, (GROUND_LINK, link), place, place))
+            ties.append(TiePose(element.name, element.kind, (GROUND_LINK, link), place, place))
         elif element.between is not None:
             (a, tail), (b, head) = map(end, element.between)
-            ties.append(Tie(element.name, element.kind, (a, b), tail, head))
+            ties.append(TiePose(element.name, element.kind, (a, b), tail, head))
         elif element.joint is not None and element.joint in joints:
             at = joints[element.joint]
-            ties.append(Tie(element.name, element.kind, at.links, at.tail, at.head, element.joint))
+            ties.append(
+                TiePose(element.name, element.kind, at.links, at.tail, at.head, element.joint)
+            )
     for limit in model.constraints:
         (a, tail), (b, head) = map(end, limit.ends)
-        ties.append(Tie(limit.name, limit.kind, (a, b), tail, head))
+        ties.append(TiePose(limit.name, limit.kind, (a, b), tail, head))
     return ties
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from linegraph.drawing.labels import LONGEST_LABEL, Labels
 from linegraph.drawing.letters import short, width
 from linegraph.drawing.outline import far
-from linegraph.drawing.poses import GROUND_LINK, Place, Poses
+from linegraph.drawing.poses import GROUND_LINK, JointPose, Poses
 from linegraph.drawing.scene import NORMAL, Box, Point, tenth
 from linegraph.drawing.symbols import END_ON
 from linegraph.drawing.views import chosen_view
@@ -97,7 +97,7 @@ class Stand:
         x, y = self.view.seen(direction)
         return (round(x, 9), -round(y, 9))
 
-    def _seat(self, place: Place) -> None:
+    def _seat(self, place: JointPose) -> None:
         """Where a joint's sign stands: clear of others where it may be moved along its axis."""
         at = self.seen(place.head)
         axis = self.along(place.axis)
@@ -135,7 +135,7 @@ class Stand:
         center = self.poses.centers.get(link)
         return None if center is None else self.seen(center)
 
-    def is_carriage(self, place: Place) -> bool:
+    def is_carriage(self, place: JointPose) -> bool:
         """Whether a slider is a body with another joint in its middle."""
         at = self.at[place.joint.name]
         x, y = self.along(place.axis)

@@ -15,9 +15,9 @@ from linegraph.components.scalar.forces import NetworkForce, forces_of
 from linegraph.dynamics import potentials
 from linegraph.dynamics.chords import Chords
 from linegraph.dynamics.law_names import joint_state, scope
-from linegraph.dynamics.network_state import ALL, DRIVEN, RESTING, Exchange, Motion
+from linegraph.dynamics.network_state import ALL, DRIVEN, RESTING, EdgeMotion, Exchange
 from linegraph.errors import ModelError
-from linegraph.kinematics.ground_frames import Frame, Pair, seated
+from linegraph.kinematics.ground_frames import GroundFrame, Pair, seated
 from linegraph.kinematics.links import Seat
 from linegraph.model.terminal_graphs import terminals_of
 from linegraph.spatial import vector
@@ -194,7 +194,7 @@ class Acting:
         row = len(self.exchange.network.states) + ports.index(element.name)
         return -self.exchange.force(row, self._what)
 
-    def motion(self, port: str) -> Motion:
+    def motion(self, port: str) -> EdgeMotion:
         """How the edge of a network in mechanics moves."""
         element = self._forces[port]
         if element.joint is None:
@@ -204,12 +204,12 @@ class Acting:
         if place is None:
             pair = self._chords.effort(self._closure(element.joint), [1])
             row = [(freedom.index, entry) for freedom, entry in self._chords.along(pair)]
-            return Motion(x, v, tuple(row), None)
+            return EdgeMotion(x, v, tuple(row), None)
         freedoms = (*place.velocities, *place.less[1])
         bias = place.drive[0].ddx if place.drive else 0
-        return Motion(x, v, tuple((f.index, f.ratio) for f in freedoms), bias)
+        return EdgeMotion(x, v, tuple((f.index, f.ratio) for f in freedoms), bias)
 
-    def _stretching(self, element: Element) -> Motion:
+    def _stretching(self, element: Element) -> EdgeMotion:
         """The same of an edge between two points: the distance, and its acceleration at v̇ = 0."""
         assert element.between is not None
         (near, a), (far, b) = (self.terminal(end) for end in element.between)
@@ -218,9 +218,9 @@ class Acting:
         row = [(f.index, entry) for f, entry in self._chords.along(pair)]
         apart = subtract(b.linear, a.linear)
         turning = (dot(apart, apart) - v * v) / x
-        return Motion(x, v, tuple(row), dot(direction, subtract(b.pull, a.pull)) + turning)
+        return EdgeMotion(x, v, tuple(row), dot(direction, subtract(b.pull, a.pull)) + turning)
 
-    def _line(self, a: Frame, b: Frame) -> tuple[Scalar, Vector, Scalar]:
+    def _line(self, a: GroundFrame, b: GroundFrame) -> tuple[Scalar, Vector, Scalar]:
         """The distance of two points, the direction from one to the other, and the rate."""
         line = subtract(b.origin, a.origin)
         x = self._algebra.sqrt(dot(line, line))
@@ -261,7 +261,7 @@ class Acting:
             force, torque = times(frame.rotation, force), times(frame.rotation, torque)
         return force, torque
 
-    def terminal(self, terminal: str) -> tuple[int, Frame]:
+    def terminal(self, terminal: str) -> tuple[int, GroundFrame]:
         """A terminal's link and its motion."""
         body, placement = self._terminals[terminal]
         link, pose = self._tree.bodies[body]
@@ -303,7 +303,7 @@ class Acting:
         self._push(b, vector.negate(pull))
         self._store(element, x)
 
-    def _push(self, at: tuple[int, Frame], force: Vector, torque: Vector = ZERO) -> None:
+    def _push(self, at: tuple[int, GroundFrame], force: Vector, torque: Vector = ZERO) -> None:
         """Apply a force and a torque in ground axes to a point of a link."""
         link, point = at
         if link < 0:

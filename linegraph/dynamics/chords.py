@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.algebra.jets import Jet, Jets, lifted
 from linegraph.algebra.protocol import set_label
-from linegraph.components.constraints.base import Constraint, Instant, Pose, Prescribed, Row
+from linegraph.components.constraints.base import Constraint, Instant, Pose, Prescribed, ReactionRow
 from linegraph.components.joints import Free
 from linegraph.components.joints.base import TORQUES
 from linegraph.components.parameters import resolver
@@ -27,7 +27,7 @@ from linegraph.dynamics.reaction_rows import rows_of, where
 from linegraph.errors import ModelError
 from linegraph.ir.program import Quantity
 from linegraph.kinematics.ground_frames import (
-    Frame,
+    GroundFrame,
     Pair,
     along_velocities,
     frames,
@@ -59,7 +59,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Equation:
+class ChordEquation:
     """One constraint, before a state is known.
 
     Attributes:
@@ -75,14 +75,14 @@ class Equation:
     holonomic: bool
 
 
-def equations(tree: KinematicTree) -> list[Equation]:
+def equations(tree: KinematicTree) -> list[ChordEquation]:
     """All constraints: first those with an equation of position, each in declared order."""
     found = [
-        Equation(quantity, closure.component.name, k, holonomic)
+        ChordEquation(quantity, closure.component.name, k, holonomic)
         for closure in tree.closures
         for k, (quantity, holonomic) in enumerate(_quantities(closure))
     ]
-    found += [Equation(r.equation(), r.name, 0, False) for r in tree.relations]
+    found += [ChordEquation(r.equation(), r.name, 0, False) for r in tree.relations]
     return [e for e in found if e.holonomic] + [e for e in found if not e.holonomic]
 
 
@@ -110,17 +110,17 @@ class Chords:
         self._algebra = algebra
         self._crossed = crossed
         self._parameters = parameters
-        self._ends: dict[str, tuple[Frame, Frame]] = {}
+        self._ends: dict[str, tuple[GroundFrame, GroundFrame]] = {}
         self._relations = dict(
             zip((r.name for r in tree.relations), relations, strict=bool(relations))
         )
 
     @cached_property
-    def frames(self) -> list[Frame]:
+    def frames(self) -> list[GroundFrame]:
         """The links in ground axes, accelerations at v̇ = 0."""
         return frames(self._tree, self._algebra, self._crossed)
 
-    def ends(self, name: str) -> tuple[Frame, Frame]:
+    def ends(self, name: str) -> tuple[GroundFrame, GroundFrame]:
         """Tail and head of a joint or constraint, in aligned axes."""
         if name not in self._ends:
             end = self._tree.ends[name]
@@ -132,7 +132,7 @@ class Chords:
         return seen(*self.ends(name))
 
     @cached_property
-    def rows(self) -> dict[str, tuple[Row, ...]]:
+    def rows(self) -> dict[str, tuple[ReactionRow, ...]]:
         """The rows of each chord."""
         found = {}
         for closure in self._tree.closures:
@@ -234,14 +234,14 @@ class Chords:
         return found | {f"der({x})": dx for x, dx in zip(names, changes, strict=True)}
 
     @cached_property
-    def _equations(self) -> list[Equation]:
+    def _equations(self) -> list[ChordEquation]:
         return equations(self._tree)
 
-    def _pair(self, closure: Closure, row: Row) -> Pair:
+    def _pair(self, closure: Closure, row: ReactionRow) -> Pair:
         origin = self.ends(closure.component.name)[1].origin
         return Pair(row.force, row.torque, origin, closure.head.link, closure.tail.link)
 
-    def _derived(self, closure: Closure, tail: Frame, head: Frame) -> list[Scalar]:
+    def _derived(self, closure: Closure, tail: GroundFrame, head: GroundFrame) -> list[Scalar]:
         """-d/dt (f . u + m . w - b) at v̇ = 0, the row's own derivative by calculating with jets."""
         jets = Jets(self._algebra)
         base = resolver(self._algebra, self._parameters)
@@ -285,13 +285,15 @@ def _quantities(closure: Closure) -> list[tuple[Quantity, bool]]:
     return found
 
 
-def _duals(algebra: Algebra, joint: Joint, tail: Frame, head: Frame) -> list[tuple[Vector, Vector]]:
+def _duals(
+    algebra: Algebra, joint: Joint, tail: GroundFrame, head: GroundFrame
+) -> list[tuple[Vector, Vector]]:
     """A joint's unit efforts in ground axes: (torque, force)."""
     duals = joint.duals(algebra, *seen(tail, head))
     return [(times(head.rotation, m), times(head.rotation, f)) for m, f in duals]
 
 
-def _in_motion(frame: Frame) -> Pose:
+def _in_motion(frame: GroundFrame) -> Pose:
     """A frame's pose as jets: axes that turn and an origin that moves; second derivatives are not needed."""
     columns = [_jets(column, cross(frame.angular, column)) for column in transpose(frame.rotation)]
     x, y, z = columns

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.components.constraints.base import Resolve
-    from linegraph.dynamics.chords import Equation
+    from linegraph.dynamics.chords import ChordEquation
     from linegraph.ir.program import Quantity
     from linegraph.kinematics.links import Closure, KinematicTree, Link
 
@@ -34,7 +34,7 @@ SHORT = 1e-6
 """Arms that are a smaller part than this of what the bodies measure are rounding of joints in one place."""
 
 
-class Sizes(NamedTuple):
+class ConstraintSizes(NamedTuple):
     """What constraints and velocities are measured by.
 
     Attributes:
@@ -68,7 +68,9 @@ class _Circuit(NamedTuple):
     own: list[Scalar]
 
 
-def sizes(given: Given, equations: Sequence[Equation], numbers: Given | None = None) -> Sizes:
+def sizes(
+    given: Given, equations: Sequence[ChordEquation], numbers: Given | None = None
+) -> ConstraintSizes:
     """The sizes of all constraints and velocities.
 
     Args:
@@ -90,7 +92,7 @@ def sizes(given: Given, equations: Sequence[Equation], numbers: Given | None = N
         of_chord.update((tree.closures[k].component.name, length) for k in group)
         of_velocity.update((f.index, length) for k in links for f in tree.links[k].velocities)
     rest = _extent(sample.links) or 1.0
-    return Sizes(
+    return ConstraintSizes(
         [_size_of(e.multiplier, of_chord.get(e.component, 0)) for e in equations],
         [
             of_velocity.get(k, rest) if quantity.unit == "m/s" else 1
@@ -99,7 +101,7 @@ def sizes(given: Given, equations: Sequence[Equation], numbers: Given | None = N
     )
 
 
-def of_rows(J: Any, found: Sizes) -> Any:
+def of_rows(J: Any, found: ConstraintSizes) -> Any:
     """By what each row of J in numbers is to be divided: where no size is known, by its own largest entry."""
     import numpy as np
 
@@ -108,7 +110,7 @@ def of_rows(J: Any, found: Sizes) -> Any:
     return np.where(known > 0, known, np.where(own > 0, own, 1.0))
 
 
-def pure(J: Any, found: Sizes) -> Any:
+def pure(J: Any, found: ConstraintSizes) -> Any:
     """J in pure numbers, in which a unit direction has entries of size 1 at most."""
     import numpy as np
 

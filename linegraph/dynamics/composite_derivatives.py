@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 Rows = list[list["Scalar"]]
 
 
-class Slopes(NamedTuple):
+class TorqueDerivatives(NamedTuple):
     """∂τ/∂d, ∂τ/∂v and ∂τ/∂a = M of mechanics, n x n."""
 
     by_change: Rows
@@ -78,10 +78,12 @@ def _constant(x: Scalar) -> bool:
     return not isinstance(x, Node) or (x.op == "symbol" and x.a == "p")
 
 
-def slopes(tree: KinematicTree, dag: Dag, crossed: Sequence[Arm], a: Sequence[Scalar]) -> Slopes:
+def slopes(
+    tree: KinematicTree, dag: Dag, crossed: Sequence[Arm], a: Sequence[Scalar]
+) -> TorqueDerivatives:
     """The derivatives of ``M a + h`` without what acts, for a tree of which `has_slopes` is true."""
     size = len(tree.velocities)
-    found = Slopes(*([[0] * size for _ in range(size)] for _ in range(3)))
+    found = TorqueDerivatives(*([[0] * size for _ in range(size)] for _ in range(3)))
     carried = composites(tree, dag, list(crossed))
     momenta = _momenta(tree, dag, crossed)
     motions = spins(tree, dag, crossed, a)
@@ -222,7 +224,7 @@ def _inward(
     i: int,
     here: Sequence[_Step],
     known: tuple[Moments, _Momentum, Wrench],
-    found: Slopes,
+    found: TorqueDerivatives,
 ) -> None:
     """The columns of a link's freedoms: its own rows, and those of all joints further in."""
     composite, momentum, (force, torque) = known
@@ -256,7 +258,7 @@ def _outward(
     i: int,
     steps: Sequence[Sequence[_Step]],
     known: tuple[Moments, _Momentum],
-    found: Slopes,
+    found: TorqueDerivatives,
 ) -> None:
     """The rows of a link's freedoms in the columns of all joints further in, and M."""
     composite, momentum = known

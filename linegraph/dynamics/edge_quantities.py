@@ -40,7 +40,7 @@ class Wrench(NamedTuple):
 NOTHING = Wrench(ZERO, ZERO)
 
 
-class Edge(NamedTuple):
+class EdgeVariables(NamedTuple):
     """What an edge does: through and across variables in ground axes, and the lever of its force.
 
     Attributes:
@@ -57,7 +57,7 @@ class Edge(NamedTuple):
     turning: Vector = ZERO
 
 
-def powers(edges: Mapping[str, Edge]) -> tuple[dict[str, Scalar], tuple[Scalar, Scalar]]:
+def powers(edges: Mapping[str, EdgeVariables]) -> tuple[dict[str, Scalar], tuple[Scalar, Scalar]]:
     """Through times across of every edge, and the sums of translation and of rotation, which are zero."""
     found: dict[str, Scalar] = {}
     translation: Scalar = 0

@@ -21,9 +21,9 @@ from linegraph.components.constraints.base import Constraint
 from linegraph.components.forces import Element, Load
 from linegraph.components.parameters import resolver
 from linegraph.dynamics.applied_forces import Acting
-from linegraph.dynamics.edge_quantities import NOTHING, Edge, Wrench
+from linegraph.dynamics.edge_quantities import NOTHING, EdgeVariables, Wrench
 from linegraph.dynamics.orthogonality import applied_to
-from linegraph.kinematics.ground_frames import GROUND_FRAME, Frame, Pair, frames, seated
+from linegraph.kinematics.ground_frames import GROUND_FRAME, GroundFrame, Pair, frames, seated
 from linegraph.kinematics.links import Seat
 from linegraph.model.choices import GROUND_AXES, HEAD
 from linegraph.model.terminal_graphs import terminals_of
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
-    from linegraph.dynamics.chords import Chords, Equation
+    from linegraph.dynamics.chords import ChordEquation, Chords
     from linegraph.dynamics.law_names import State
     from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.formulated import Formulated
@@ -78,7 +78,7 @@ class InverseScheme:
         chords: Chords,
         state: State,
         acceleration: Sequence[Scalar] | None = None,
-        multipliers: Sequence[tuple[Equation, Scalar]] = (),
+        multipliers: Sequence[tuple[ChordEquation, Scalar]] = (),
     ) -> None:
         """Nothing is calculated before it is asked for."""
         self._model: System = derivation.system
@@ -91,24 +91,24 @@ class InverseScheme:
         self._multipliers = multipliers
         self._frames = frames(tree, algebra, crossed, acceleration)
         self._terminals = terminals_of(self._model)
-        self._known: dict[str, Frame] = {}
+        self._known: dict[str, GroundFrame] = {}
         self._acting = Acting(
             self._model, tree, algebra, parameters, chords, state, acceleration=acceleration
         )
 
     # -- where things are
 
-    def terminal(self, name: str) -> Frame:
+    def terminal(self, name: str) -> GroundFrame:
         """The motion of a terminal; of a mass centre too."""
         if name not in self._known:
             self._known[name] = self._found(name)
         return self._known[name]
 
-    def center(self, body: str) -> Frame:
+    def center(self, body: str) -> GroundFrame:
         """The motion of a body's mass centre, in the body's axes."""
         return self.terminal(f"{body}.{MASS_CENTER}")
 
-    def _found(self, name: str) -> Frame:
+    def _found(self, name: str) -> GroundFrame:
         body, _, last = name.rpartition(".")
         if last == MASS_CENTER and body in self._model.bodies:
             return self._body(body).at(mass_center(self._model.bodies[body], self._resolve))
@@ -117,7 +117,7 @@ class InverseScheme:
         x, y, z = (self._vector(row) for row in placement.rotation)
         return self._body(body).at(at, (x, y, z))
 
-    def _body(self, body: str) -> Frame:
+    def _body(self, body: str) -> GroundFrame:
         link, pose = self._tree.bodies[body]
         return seated(self._frames, Seat(link, pose.at, pose.rotation))
 
@@ -222,15 +222,15 @@ class InverseScheme:
         return [(head, on_head), (tail, on_head.turned())]
 
     @cached_property
-    def elements(self) -> dict[str, Edge]:
+    def elements(self) -> dict[str, EdgeVariables]:
         """Every element and load as an edge."""
         return {element.name: self._element(element) for element in self._model.elements}
 
-    def _element(self, element: Element | Load) -> Edge:
+    def _element(self, element: Element | Load) -> EdgeVariables:
         set_label(self._algebra, f"{element.kind} {element.name}")
         if isinstance(element, Load):
             frame = self.terminal(element.at)
-            return Edge(Wrench(*self._acting.load(element)), frame.linear, frame.angular)
+            return EdgeVariables(Wrench(*self._acting.load(element)), frame.linear, frame.angular)
         if element.between is not None:
             tail, head = (self.terminal(end) for end in element.between)
             pull = self._acting.between(element)[1]
@@ -242,7 +242,7 @@ class InverseScheme:
         tail, head = (self.terminal(end) for end in joint.between)
         return self._edge(Wrench(pair.force, pair.torque), tail, head)
 
-    def inertia(self, body: str) -> Edge:
+    def inertia(self, body: str) -> EdgeVariables:
         """A body's inertia edge, from ground to its mass centre: d'Alembert's force and torque, weight."""
         own = self._model.bodies[body]
         frame = self.center(body)
@@ -253,7 +253,7 @@ class InverseScheme:
         tensor = self._central(body, mass)
         torque = add(applied_to(tensor, spin), cross(omega, applied_to(tensor, omega)))
         through = Wrench(scale(mass, pull), times(frame.rotation, torque)).turned()
-        return Edge(through, frame.linear, frame.angular)
+        return EdgeVariables(through, frame.linear, frame.angular)
 
     def _central(self, body: str, mass: Scalar) -> Any:
         """A body's inertia about its mass centre, in its axes."""
@@ -272,10 +272,10 @@ class InverseScheme:
         )
 
     @staticmethod
-    def _edge(through: Wrench, tail: Frame, head: Frame) -> Edge:
+    def _edge(through: Wrench, tail: GroundFrame, head: GroundFrame) -> EdgeVariables:
         """An edge between two moving frames."""
         lever = negate(cross(subtract(head.origin, tail.origin), through.force))
-        return Edge(
+        return EdgeVariables(
             through,
             subtract(head.linear, tail.linear),
             subtract(head.angular, tail.angular),
@@ -373,9 +373,9 @@ class InverseScheme:
         exchange = self._acting.exchange
         return {} if exchange is None else exchange.variables()
 
-    def edges(self) -> dict[str, Edge]:
+    def edges(self) -> dict[str, EdgeVariables]:
         """All edges of the system graph, by name, in both mechanical subspaces at once."""
-        found: dict[str, Edge] = {}
+        found: dict[str, EdgeVariables] = {}
         for body in self._model.bodies:
             found[f"{body}/inertia"] = self.inertia(body)
         for name, closure in self._tree.ends.items():
@@ -385,7 +385,7 @@ class InverseScheme:
         found |= self.elements
         return found | self._arms(found)
 
-    def _arms(self, found: Mapping[str, Edge]) -> dict[str, Edge]:
+    def _arms(self, found: Mapping[str, EdgeVariables]) -> dict[str, EdgeVariables]:
         """Rigid arms carry what their terminals' other edges exert: the vertex postulate."""
         received: dict[str, Wrench] = {}
         for name, (tail, head) in self._between.items():

@@ -36,7 +36,7 @@ RESTING, DRIVEN, ALL, NONE = "resting", "driven", "all", "none"
 
 
 @dataclass(frozen=True)
-class Motion:
+class EdgeMotion:
     """How an edge in 3-D mechanics moves.
 
     Attributes:
@@ -72,16 +72,16 @@ class Exchange:
     parameters: Mapping[str, Scalar]
     v: Sequence[Scalar]
     names: Mapping[str, Scalar]
-    motion: Callable[[str], Motion]
+    motion: Callable[[str], EdgeMotion]
     acceleration: Sequence[Scalar] | None = None
-    _motions: dict[str, Motion] = field(default_factory=dict)
+    _motions: dict[str, EdgeMotion] = field(default_factory=dict)
 
     @property
     def first(self) -> int:
         """Where the network's states begin in v."""
         return self.tree.layout.mechanical
 
-    def motion_of(self, port: str) -> Motion:
+    def motion_of(self, port: str) -> EdgeMotion:
         """How an edge in mechanics moves, found once."""
         if port not in self._motions:
             self._motions[port] = self.motion(port)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.components.constraints.base import Constraint, Instant, Pose, Row
+from linegraph.components.constraints.base import Constraint, Instant, Pose, ReactionRow
 from linegraph.components.joints.base import Along, Restriction, Square, Thread, Unturned, Upright
 from linegraph.kinematics.ground_frames import seen
 from linegraph.spatial.rotation import IDENTITY_MATRIX, product
@@ -33,7 +33,7 @@ def where(restriction: Restriction, joint: Joint) -> str:
     return f" along ({', '.join(f'{float(x):.4g}' for x in direction)}) of its tail frame"
 
 
-def rows_of(closure: Closure, at: Instant) -> tuple[Row, ...]:
+def rows_of(closure: Closure, at: Instant) -> tuple[ReactionRow, ...]:
     """All rows of a chord at an instant, over any algebra."""
     component = closure.component
     if isinstance(component, Constraint):
@@ -46,16 +46,16 @@ def rows_of(closure: Closure, at: Instant) -> tuple[Row, ...]:
     return tuple(found)
 
 
-def _row(restriction: Restriction, algebra: Algebra, tail: Pose, head: Pose) -> Row:
+def _row(restriction: Restriction, algebra: Algebra, tail: Pose, head: Pose) -> ReactionRow:
     """A reaction direction at a place of tail and head."""
     line = subtract(head.origin, tail.origin)
     if isinstance(restriction, Along):
         direction = times(tail.rotation, restriction.direction)
-        return Row(dot(direction, line), direction, ZERO)
+        return ReactionRow(dot(direction, line), direction, ZERO)
     if isinstance(restriction, Square):
         a, b = times(tail.rotation, restriction.tail), times(head.rotation, restriction.head)
         position = (dot(a, b) - restriction.cosine) / restriction.sine
-        return Row(position, ZERO, scale(1 / restriction.sine, cross(b, a)))
+        return ReactionRow(position, ZERO, scale(1 / restriction.sine, cross(b, a)))
     if isinstance(restriction, Upright):
         return _upright(restriction.axis, tail, head)
     if isinstance(restriction, Unturned):
@@ -64,30 +64,30 @@ def _row(restriction: Restriction, algebra: Algebra, tail: Pose, head: Pose) -> 
     return _thread(restriction.advance, algebra, tail, head)
 
 
-def _upright(axis: int, tail: Pose, head: Pose) -> Row:
+def _upright(axis: int, tail: Pose, head: Pose) -> ReactionRow:
     """The head's z along the tail's."""
     x, y, z = transpose(tail.rotation)
     leaning = transpose(head.rotation)[2]
     lean = -dot(y, leaning) if axis == 0 else dot(x, leaning)
-    return Row(2 * lean / (1 + dot(z, leaning)), ZERO, (x, y)[axis])
+    return ReactionRow(2 * lean / (1 + dot(z, leaning)), ZERO, (x, y)[axis])
 
 
-def _unturned(axis: int, tail: Pose, head: Pose) -> Row:
+def _unturned(axis: int, tail: Pose, head: Pose) -> ReactionRow:
     """No turn at all: the vector of the rotation from tail to head, of length 2 tan(angle / 2)."""
     a, b = transpose(tail.rotation), transpose(head.rotation)
     j, k = (axis + 1) % 3, (axis + 2) % 3
     cosines = 1 + (dot(a[0], b[0]) + dot(a[1], b[1]) + dot(a[2], b[2]))
-    return Row(2 * (dot(a[k], b[j]) - dot(a[j], b[k])) / cosines, ZERO, a[axis])
+    return ReactionRow(2 * (dot(a[k], b[j]) - dot(a[j], b[k])) / cosines, ZERO, a[axis])
 
 
-def _thread(advance: Scalar, algebra: Algebra, tail: Pose, head: Pose) -> Row:
+def _thread(advance: Scalar, algebra: Algebra, tail: Pose, head: Pose) -> ReactionRow:
     """A screw, whatever number of full turns it has made."""
     axis = times(tail.rotation, (0, 0, 1))
     shift = dot(axis, subtract(head.origin, tail.origin))
     torque = negate(scale(advance, axis))
     turned = product(transpose(tail.rotation), head.rotation)
     angle = algebra.function("atan2", turned[1][0], turned[0][0])
-    return Row(advance * _wrapped(algebra, shift / advance - angle), axis, torque)
+    return ReactionRow(advance * _wrapped(algebra, shift / advance - angle), axis, torque)
 
 
 def _wrapped(algebra: Algebra, angle: Scalar) -> Scalar:
@@ -95,7 +95,7 @@ def _wrapped(algebra: Algebra, angle: Scalar) -> Scalar:
     return algebra.function("atan2", algebra.sin(angle), algebra.cos(angle))
 
 
-def _driven(joint: Joint, at: Instant) -> list[Row]:
+def _driven(joint: Joint, at: Instant) -> list[ReactionRow]:
     """Rows that prescribe a chord's own coordinates; of angles, full turns do not count."""
     rotation, displacement = seen(at.tail, at.head)
     measured = joint.measured(at.algebra, rotation, displacement)
@@ -108,5 +108,5 @@ def _driven(joint: Joint, at: Instant) -> list[Row]:
             behind = x - given.x
             position = _wrapped(at.algebra, behind) if quantity.unit == "rad" else behind
             force, torque = times(at.head.rotation, f), times(at.head.rotation, m)
-            found.append(Row(position, force, torque, given.dx))
+            found.append(ReactionRow(position, force, torque, given.dx))
     return found

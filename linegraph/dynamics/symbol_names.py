@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from linegraph.dynamics.chords import equations
-from linegraph.model.name_register import Claim, Free, declared, require_distinct
+from linegraph.model.name_register import Claim, FreeNames, declared, require_distinct
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,7 +32,7 @@ def symbol_names(derivation: Formulated) -> dict[str, tuple[str, ...]]:
     owners = require_distinct([*declared(model), *_of_networks(derivation)], model.places)
     positions = [quantity.name for quantity in tree.positions]
     velocities = [quantity.name for quantity in tree.velocities]
-    free = Free(model.parameters)
+    free = FreeNames(model.parameters)
     rates = [
         free.name(f"{name}_dot" if name in positions else name, f"state_{name}")
         for name in velocities

@@ -30,7 +30,7 @@ COSTS = (4, *[8] * 3, *[5] * 6)
 """About what a coefficient of each moment costs by itself."""
 
 
-class Tie(NamedTuple):
+class TiedColumn(NamedTuple):
     """A column of a link as a sum of others.
 
     Attributes:
@@ -50,7 +50,7 @@ class Tie(NamedTuple):
         return products + len(self.terms) - 1 <= COSTS[self.moment]
 
 
-def ties(derivation: Derived, tree: KinematicTree, *, folded: bool) -> list[Tie]:
+def ties(derivation: Derived, tree: KinematicTree, *, folded: bool) -> list[TiedColumn]:
     """The ties of all links beyond another one, inner links first.
 
     Args:
@@ -71,7 +71,7 @@ def ties(derivation: Derived, tree: KinematicTree, *, folded: bool) -> list[Tie]
             plain = all(size(x) <= LARGEST for x in vector.values())
             links = pivot < own * len(members)
             if links and plain and not any(_divides(factor) for _, _, factor in terms):
-                found.append(Tie(i, pivot % own, members[i].parent, terms))
+                found.append(TiedColumn(i, pivot % own, members[i].parent, terms))
     return found
 
 
@@ -88,7 +88,7 @@ def _divides(factor: Scalar) -> bool:
     return False
 
 
-def tied(columns: Sequence[Columns], chosen: Sequence[Tie]) -> list[Columns]:
+def tied(columns: Sequence[Columns], chosen: Sequence[TiedColumn]) -> list[Columns]:
     """Columns in which some are written as sums, along all velocities that the parent has, too."""
     found = [{k: list(entries) for k, entries in of_link.items()} for of_link in columns]
     for tie in chosen:

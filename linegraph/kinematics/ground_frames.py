@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from linegraph.kinematics.state_layout import Freedom
 
 
-class Frame(NamedTuple):
+class GroundFrame(NamedTuple):
     """A frame in motion, in ground axes.
 
     Attributes:
@@ -43,13 +43,13 @@ class Frame(NamedTuple):
     spin: Vector
     pull: Vector
 
-    def at(self, place: Vector, axes: Matrix = IDENTITY_MATRIX) -> Frame:
+    def at(self, place: Vector, axes: Matrix = IDENTITY_MATRIX) -> GroundFrame:
         """A frame fixed in this one."""
         arm = times(self.rotation, place)
         sweep = cross(self.angular, arm)
         bend = add(cross(self.spin, arm), cross(self.angular, sweep))
         rotation = self.rotation if axes == IDENTITY_MATRIX else product(self.rotation, axes)
-        return Frame(
+        return GroundFrame(
             rotation,
             add(self.origin, arm),
             self.angular,
@@ -59,7 +59,7 @@ class Frame(NamedTuple):
         )
 
 
-GROUND_FRAME = Frame(IDENTITY_MATRIX, ZERO, ZERO, ZERO, ZERO, ZERO)
+GROUND_FRAME = GroundFrame(IDENTITY_MATRIX, ZERO, ZERO, ZERO, ZERO, ZERO)
 
 
 def frames(
@@ -67,10 +67,10 @@ def frames(
     algebra: Algebra,
     crossed: Sequence[Arm],
     acceleration: Iterable[Scalar] | None = None,
-) -> list[Frame]:
+) -> list[GroundFrame]:
     """Every link's working frame; with no v̇ given, accelerations are those at v̇ = 0."""
     a = None if acceleration is None else tuple(acceleration)
-    found: list[Frame] = []
+    found: list[GroundFrame] = []
     for link, arm in zip(tree.links, crossed, strict=True):
         set_label(algebra, f"place in ground, {link.caption}")
         near = found[link.parent] if link.parent >= 0 else GROUND_FRAME
@@ -94,7 +94,7 @@ def frames(
         # the relative velocity turns with the near link, and with the far one as its components are
         coriolis = cross(add(near.angular, whole), linear)
         found.append(
-            Frame(
+            GroundFrame(
                 rotation,
                 carried.origin,
                 whole,
@@ -106,7 +106,7 @@ def frames(
     return found
 
 
-def seated(found: Sequence[Frame], seat: Seat) -> Frame:
+def seated(found: Sequence[GroundFrame], seat: Seat) -> GroundFrame:
     """The frame of a place on a link."""
     link = found[seat.link] if seat.link >= 0 else GROUND_FRAME
     return link.at(seat.at, seat.rotation)
@@ -123,7 +123,7 @@ class Pair(NamedTuple):
 
 
 def along_velocities(
-    tree: KinematicTree, crossed: Sequence[Arm], found: Sequence[Frame], pair: Pair
+    tree: KinematicTree, crossed: Sequence[Arm], found: Sequence[GroundFrame], pair: Pair
 ) -> Iterator[tuple[Freedom, Scalar]]:
     """What a force and a torque between two links do along each velocity: a column of Hᵀ, projected.
 
@@ -155,7 +155,7 @@ def along_velocities(
 def _projected(
     tree: KinematicTree,
     crossed: Sequence[Arm],
-    found: Sequence[Frame],
+    found: Sequence[GroundFrame],
     link: int,
     torque: Vector,
     force: Vector,
@@ -184,13 +184,13 @@ def _meeting(tree: KinematicTree, crossed: Sequence[Arm], head: int, tail: int) 
     return link, level
 
 
-def seen(tail: Pose | Frame, head: Pose | Frame) -> tuple[Matrix, Vector]:
+def seen(tail: Pose | GroundFrame, head: Pose | GroundFrame) -> tuple[Matrix, Vector]:
     """Head from tail: rotation, and displacement in the tail's axes."""
     inward = vector.transpose(tail.rotation)
     return product(inward, head.rotation), times(inward, subtract(head.origin, tail.origin))
 
 
-def relative_motion(tail: Frame, head: Frame) -> tuple[Vector, Vector]:
+def relative_motion(tail: GroundFrame, head: GroundFrame) -> tuple[Vector, Vector]:
     """Velocity of the head's origin as seen from the tail, and relative angular velocity."""
     carried = cross(tail.angular, subtract(head.origin, tail.origin))
     u = subtract(subtract(head.linear, tail.linear), carried)

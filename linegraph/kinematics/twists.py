@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.algebra.protocol import set_label
 from linegraph.kinematics.accelerations import spins
-from linegraph.kinematics.ground_frames import Frame, frames
+from linegraph.kinematics.ground_frames import GroundFrame, frames
 from linegraph.spatial import vector
 from linegraph.spatial.rotation import IDENTITY_MATRIX
 from linegraph.spatial.vector import ZERO, Matrix, Vector, add, cross, times
@@ -70,7 +70,7 @@ class Outlook:
         self.crossed = crossed
 
     @cached_property
-    def frames(self) -> list[Frame]:
+    def frames(self) -> list[GroundFrame]:
         """Every link's frame in ground axes, accelerations at v̇ = 0."""
         return frames(self.tree, self.algebra, self.crossed)
 

@@ -168,7 +168,7 @@ def own_problem(name: str, owner: str) -> str:
     return f"{own}, but {owner} has this name too; rename that"
 
 
-class Free:
+class FreeNames:
     """Gives names that nothing else has.
 
     Args:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class Row:
+class LinearRow:
     """``Σ entries unknown + rest = 0``.
 
     Attributes:
@@ -46,11 +46,11 @@ class Elimination:
     values: dict[Symbol, Scalar] = field(default_factory=dict)
     pivots: list[Scalar] = field(default_factory=list)
     left: list[Scalar] = field(default_factory=list)
-    steps: list[tuple[Symbol, Row]] = field(default_factory=list)
+    steps: list[tuple[Symbol, LinearRow]] = field(default_factory=list)
 
 
 def eliminate(
-    rows: Sequence[Row], dag: Dag, residues: Residues, last: Collection[Symbol] = ()
+    rows: Sequence[LinearRow], dag: Dag, residues: Residues, last: Collection[Symbol] = ()
 ) -> Elimination:
     """Solve rows for as many unknowns as they determine.
 
@@ -71,7 +71,7 @@ def eliminate(
         pivot = pivot_row.entries.pop(unknown)
         if not _plain(pivot):
             found.pivots.append(pivot)
-        scaled = Row(
+        scaled = LinearRow(
             {symbol: _over(entry, pivot) for symbol, entry in pivot_row.entries.items()},
             _over(pivot_row.rest, pivot),
         )
@@ -90,11 +90,11 @@ def eliminate(
     return found
 
 
-def _cleaned(row: Row, residues: Residues) -> Row:
-    return Row({s: e for s, e in row.entries.items() if residues(e)}, row.rest, row.owner)
+def _cleaned(row: LinearRow, residues: Residues) -> LinearRow:
+    return LinearRow({s: e for s, e in row.entries.items() if residues(e)}, row.rest, row.owner)
 
 
-def _subtract(row: Row, scaled: Row, factor: Scalar, residues: Residues) -> None:
+def _subtract(row: LinearRow, scaled: LinearRow, factor: Scalar, residues: Residues) -> None:
     for symbol, entry in scaled.entries.items():
         total = row.entries.get(symbol, 0) - factor * entry
         if residues(total):
@@ -104,7 +104,7 @@ def _subtract(row: Row, scaled: Row, factor: Scalar, residues: Residues) -> None
     row.rest = row.rest - factor * scaled.rest
 
 
-def _pivot(rows: Sequence[Row], last: Collection[Symbol]) -> tuple[int, Symbol] | None:
+def _pivot(rows: Sequence[LinearRow], last: Collection[Symbol]) -> tuple[int, Symbol] | None:
     """The next pivot: its row and its unknown."""
     columns: dict[Symbol, int] = {}
     for row in rows:

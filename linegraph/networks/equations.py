@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from linegraph.components.domains import Domain
     from linegraph.components.scalar.branches import Branch
     from linegraph.model.system import System
-    from linegraph.networks.law_records import Laws, Store
+    from linegraph.networks.law_records import Laws, StoreLaw
     from linegraph.networks.selection import Selection
     from linegraph.networks.static import Statics
 
@@ -206,7 +206,7 @@ class _Derivation:
             letter = domain.across.letter if kind == "X" else domain.through.letter
         return f"{letter}_{edge.replace('.', '_')}"
 
-    def _short(self, branch: Branch, store: Store) -> str:
+    def _short(self, branch: Branch, store: StoreLaw) -> str:
         """The component's name, unless it keeps several variables of one kind."""
         alike = [
             b
@@ -263,7 +263,7 @@ class _Derivation:
         keys = [store.key for store in self._laws.stores if store.edge not in determined]
         return [self._place.get(key) for key in (*keys, *(own.key for own in self._laws.own))]
 
-    def _dual(self, store: Store) -> Scalar:
+    def _dual(self, store: StoreLaw) -> Scalar:
         return self._dag.symbol(*store.dual)
 
     def _renumbered(self, states: Sequence[State]) -> Replay:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Store:
+class StoreLaw:
     """An edge that keeps a variable: the other one is ``d/dt charge + rest``.
 
     Attributes:
@@ -64,8 +64,8 @@ class Laws:
     dag: Dag
     calculus: Calculus
     statics: list[Static] = field(default_factory=list)
-    stores: list[Store] = field(default_factory=list)
-    spatial: list[Store] = field(default_factory=list)
+    stores: list[StoreLaw] = field(default_factory=list)
+    spatial: list[StoreLaw] = field(default_factory=list)
     own: list[Own] = field(default_factory=list)
     energy: dict[str, Scalar] = field(default_factory=dict)
     heat: dict[str, Scalar] = field(default_factory=dict)

@@ -21,7 +21,7 @@ from linegraph.errors import ModelError
 from linegraph.graph.forest import choose_forest
 from linegraph.ir.dag import Dag, Node
 from linegraph.ir.program import Quantity
-from linegraph.networks.law_records import Laws, Own, Static, Store
+from linegraph.networks.law_records import Laws, Own, Static, StoreLaw
 from linegraph.networks.stored import changing, coenergy_of, own_energy_of
 from linegraph.networks.variables import At, _Names, key_of
 
@@ -112,7 +112,7 @@ def _evaluate(component: Component, at: At, laws: Laws) -> None:
         if not isinstance(charge, Node) and charge == 0:
             raise ModelError("", "stores nothing: its value is zero; leave it out")
         found = laws.spatial if branch.port.spatial else laws.stores
-        found.append(Store(branch.name, key_of(kept[k]), key_of(other[k]), charge, zero))
+        found.append(StoreLaw(branch.name, key_of(kept[k]), key_of(other[k]), charge, zero))
         quadratic = quadratic and _proportional(charge, kept_keys, laws)
         stored = stored + kept[k] * charge
     rates = list(component.rates(at))

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from linegraph.algebra.differentiation import Sizes, substitution
+from linegraph.algebra.differentiation import TermSizes, substitution
 from linegraph.algebra.residues import CONSTANT, Residues
 from linegraph.errors import ModelError
 from linegraph.networks.static import EASE, LOOP
@@ -135,7 +135,7 @@ class Network:
         What does not depend on the unknowns is a number while they are searched: its size is its own, however
         steeply it depends on the time or an input.
         """
-        return [Sizes(self.laws.calculus, (LOOP,))(r) for r in self.loop]
+        return [TermSizes(self.laws.calculus, (LOOP,))(r) for r in self.loop]
 
     @cached_property
     def force_slopes(self) -> list[list[Scalar]]:
@@ -146,7 +146,7 @@ class Network:
     @cached_property
     def variable_sizes(self) -> dict[str, tuple[Scalar, Scalar]]:
         """Of (X, Y) of every edge the size of the terms that they are sums of."""
-        sizes = Sizes(self.laws.calculus)
+        sizes = TermSizes(self.laws.calculus)
         return {name: (sizes(x), sizes(y)) for name, (x, y) in self.variables.items()}
 
     @cached_property
@@ -173,7 +173,7 @@ class Network:
     @cached_property
     def part_sizes(self) -> dict[str, tuple[Scalar, ...]]:
         """Of F with inputs or without the size of the terms that each row is the sum of."""
-        sizes = Sizes(self.laws.calculus)
+        sizes = TermSizes(self.laws.calculus)
         return {what: tuple(sizes(x) for x in rows) for what, rows in self.parts.items()}
 
     @cached_property

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from linegraph.algebra.differentiation import substitution
 from linegraph.algebra.residues import Residues, Span, rank
 from linegraph.errors import ModelError
-from linegraph.networks.elimination import Row, eliminate
+from linegraph.networks.elimination import LinearRow, eliminate
 from linegraph.networks.network import RATE
 
 if TYPE_CHECKING:
@@ -56,11 +56,11 @@ class Reduction:
             for name, (x, y) in variables.items():
                 variables[name] = (replace(x), replace(y))
 
-    def _rate_row(self, row: Scalar, gone: set[int]) -> Row:
+    def _rate_row(self, row: Scalar, gone: set[int]) -> LinearRow:
         gradient = self._calculus.gradient(row)
         entries = {s: slope for s, slope in gradient.items() if s[0] == RATE and s[1] not in gone}
         rest = substitution(self._dag, dict.fromkeys(entries, 0))(row)
-        return Row(entries, rest)
+        return LinearRow(entries, rest)
 
     def _null(self, rows: Sequence[Scalar], gone: set[int]) -> Scalar | None:
         """What a null combination of 𝓜 says must be zero; None if 𝓜 is regular."""

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from linegraph.components.scalar.base import Component
     from linegraph.components.scalar.branches import Branch
     from linegraph.graph.multigraph import Projection
-    from linegraph.networks.law_records import Laws, Static, Store
+    from linegraph.networks.law_records import Laws, Static, StoreLaw
 
 MOST_NAMED = 8
 
@@ -38,9 +38,9 @@ class Selection:
         topologies: the tree of each scalar subspace.
     """
 
-    states: tuple[Store, ...]
+    states: tuple[StoreLaw, ...]
     dependent: dict[str, tuple[str, ...]]
-    determined: tuple[Store, ...]
+    determined: tuple[StoreLaw, ...]
     topologies: tuple[Topology, ...]
 
 
@@ -79,8 +79,8 @@ def select(
 
 
 def _preferred(
-    branches: Sequence[Branch], stores: Sequence[Store], wanted: Sequence[str]
-) -> list[Store]:
+    branches: Sequence[Branch], stores: Sequence[StoreLaw], wanted: Sequence[str]
+) -> list[StoreLaw]:
     """Wanted stores, then those with an end on ground, then the others; each in declared order."""
     ends = {b.name: b.port.between for b in branches}
     return sorted(
@@ -147,9 +147,11 @@ class _Judge:
         gradient = self._laws.calculus.gradient(static.zero)
         return [symbol for symbol in gradient if self._kirchhoff.knows(symbol)]
 
-    def take_stores(self, order: Sequence[Store]) -> tuple[list[Store], dict[str, tuple[str, ...]]]:
+    def take_stores(
+        self, order: Sequence[StoreLaw]
+    ) -> tuple[list[StoreLaw], dict[str, tuple[str, ...]]]:
         """What stores keep, as long as it is independent."""
-        states: list[Store] = []
+        states: list[StoreLaw] = []
         dependent: dict[str, tuple[str, ...]] = {}
         for store in order:
             made = self._span.add(dict(self._kirchhoff.form(store.key)), ("state", store.edge))
@@ -161,10 +163,12 @@ class _Judge:
             dependent[store.edge] = tuple(dict.fromkeys((*on, *through)))
         return states, dependent
 
-    def take_duals(self, states: Sequence[Store], order: Sequence[Store]) -> tuple[Store, ...]:
+    def take_duals(
+        self, states: Sequence[StoreLaw], order: Sequence[StoreLaw]
+    ) -> tuple[StoreLaw, ...]:
         """The other variables of as many stores as it takes, rather of those that depend."""
         independent = {store.edge for store in states}
-        found: list[Store] = []
+        found: list[StoreLaw] = []
         for store in sorted(order, key=lambda store: store.edge in independent):
             if len(found) + len(states) == len(order):
                 break

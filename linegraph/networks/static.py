@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from linegraph.algebra.differentiation import Replay, substitution
 from linegraph.algebra.residues import Residues
-from linegraph.networks.elimination import Row, eliminate
+from linegraph.networks.elimination import LinearRow, eliminate
 from linegraph.networks.kirchhoff import Kirchhoff
 
 if TYPE_CHECKING:
@@ -95,22 +95,22 @@ class Solver:
             lambda s: s[0] == DUAL or (self._kirchhoff.knows(s) and s not in self._known),
         )
 
-    def _state_rows(self) -> list[Row]:
+    def _state_rows(self) -> list[LinearRow]:
         """A state that is no primary variable of the tree still is what Kirchhoff's laws say."""
         rows = []
         for key in sorted(self._known):
             form = self._kirchhoff.form(key)
             if form != {key: 1}:
                 entries, rest = self._split(dict(form.items()))
-                rows.append(Row(entries, rest - self._dag.symbol(*key)))
+                rows.append(LinearRow(entries, rest - self._dag.symbol(*key)))
         return rows
 
-    def _dual_rows(self) -> list[Row]:
+    def _dual_rows(self) -> list[LinearRow]:
         """What only rates determine is known under a symbol of its own."""
         rows = []
         for store in self._selection.determined:
             entries, rest = self._split(dict(self._kirchhoff.form(store.dual)))
-            rows.append(Row(entries, rest - self._dag.symbol(DUAL, store.edge)))
+            rows.append(LinearRow(entries, rest - self._dag.symbol(DUAL, store.edge)))
         return rows
 
     def _split(self, slopes: dict[Symbol, Scalar]) -> tuple[dict[Symbol, Scalar], Scalar]:
@@ -124,7 +124,7 @@ class Solver:
                 entries[symbol] = entries.get(symbol, 0) + slope
         return entries, rest
 
-    def _linear(self, zero: Scalar) -> Row | None:
+    def _linear(self, zero: Scalar) -> LinearRow | None:
         """A law as a row; None if it is not linear in what is unknown."""
         gradient = self._calculus.gradient(zero)
         unknown = {s for s in gradient if self._kirchhoff.knows(s) and s not in self._known}
@@ -137,7 +137,7 @@ class Solver:
             for primary, factor in self._kirchhoff.form(symbol).items():
                 slopes[primary] = slopes.get(primary, 0) + factor * gradient[symbol]
         entries, rest = self._split(slopes)
-        return Row(entries, rest + constant)
+        return LinearRow(entries, rest + constant)
 
     def _unknown_in(self, x: Scalar) -> bool:
         return any(

@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.notation.tree import (
     ONE,
-    Call,
+    Fraction,
+    FunctionCall,
     Grid,
     Math,
     Name,
-    Number,
+    Numeral,
     Power,
-    Quotient,
     Raw,
-    Relation,
     Root,
     Sum,
+    TwoSides,
     negated,
     product,
     total,
@@ -42,14 +42,14 @@ def number(x: Any) -> Math:
     if x < 0:
         return negated(number(-x))
     if isinstance(x, int):
-        return Number(str(x))
+        return Numeral(str(x))
     value = float(x)
     text = f"{value:.{DIGITS}g}"
     inexact = float(text) != value
     if abs(float(text) - value) <= 1e-15 * value:
         inexact = False
     mantissa, _, exponent = text.partition("e")
-    return Number(f"{mantissa}e{int(exponent)}" if exponent else text, inexact)
+    return Numeral(f"{mantissa}e{int(exponent)}" if exponent else text, inexact)
 
 
 class Expressions:
@@ -87,13 +87,13 @@ class Expressions:
         if e.is_Pow:
             return self._power(e)
         if e.is_Rational and not e.is_Integer:
-            ratio = Quotient(Number(str(abs(e.p))), Number(str(e.q)))
+            ratio = Fraction(Numeral(str(abs(e.p))), Numeral(str(e.q)))
             return negated(ratio) if e.p < 0 else ratio
         if e.is_Integer or e.is_Float:
             whole = int(e) if e.is_Integer or (float(e).is_integer() and abs(e) < 1e6) else float(e)
             return number(whole)
         if e.is_Relational and e.rel_op == "==":
-            return Relation(self(e.lhs), "=", self(e.rhs))
+            return TwoSides(self(e.lhs), "=", self(e.rhs))
         if e.is_Function:
             return self._function(e)
         if e.is_Derivative:
@@ -110,7 +110,7 @@ class Expressions:
         negative = False
         for part in e.args:
             if part.is_Rational and not part.is_Integer:
-                front = Quotient(Number(str(abs(part.p))), Number(str(part.q)))
+                front = Fraction(Numeral(str(abs(part.p))), Numeral(str(part.q)))
                 negative ^= part.p < 0
             elif part.is_Pow and part.exp.is_number and part.exp.is_negative:
                 below.append(self._power(part.base**-part.exp if part.exp != -1 else part.base))
@@ -120,9 +120,9 @@ class Expressions:
                     tree, negative = negated(tree), not negative
                 above.append(tree)
         if below:
-            if isinstance(front, Quotient):
+            if isinstance(front, Fraction):
                 above, below = [front.above, *above], [front.below, *below]
-            found: Math = Quotient(product(above), product(below))
+            found: Math = Fraction(product(above), product(below))
         else:
             found = product([*([front] if front != ONE else []), *above])
         return negated(found) if negative else found
@@ -132,7 +132,7 @@ class Expressions:
             return self(e)
         base, exponent = e.base, e.exp
         if exponent.is_number and exponent.is_negative:
-            return Quotient(ONE, self._power(base**-exponent))
+            return Fraction(ONE, self._power(base**-exponent))
         if exponent.is_Rational and exponent.q == 2:
             root = Root(self(base))
             whole = int(exponent.p) // 2
@@ -151,7 +151,7 @@ class Expressions:
             return self._name(name)
         if len(e.args) == 1 and name in ("sqrt",):
             return Root(self(e.args[0]))
-        return Call(RENAMED.get(name, name), tuple(self(a) for a in e.args))
+        return FunctionCall(RENAMED.get(name, name), tuple(self(a) for a in e.args))
 
     def _derivative(self, e: Any) -> Math:
         """Dots over functions of the time."""

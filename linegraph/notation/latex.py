@@ -6,7 +6,16 @@ import unicodedata
 from typing import TYPE_CHECKING
 
 from linegraph.notation.names import LATEX_GREEK
-from linegraph.notation.tree import TRANSPOSED, Call, Math, Name, Number, Product, Quotient, Raw
+from linegraph.notation.tree import (
+    TRANSPOSED,
+    Fraction,
+    FunctionCall,
+    Math,
+    Name,
+    Numeral,
+    Product,
+    Raw,
+)
 from linegraph.notation.writing import ATOM, SIDES, SUM, Writer, digits, numbered, visible
 
 if TYPE_CHECKING:
@@ -133,7 +142,7 @@ class Latex(Writer):
         """Nothing between letters, a thin space beside words."""
         if sign:
             return f" {_SIGNS.get(sign, sign)}"
-        if isinstance(left, Number) and isinstance(right, Number):
+        if isinstance(left, Numeral) and isinstance(right, Numeral):
             return r" \cdot "
         return r"\," if _wide(left) or _wide(right) else " "
 
@@ -143,7 +152,7 @@ class Latex(Writer):
 
     def quotient(self, above: Math, below: Math) -> str:
         """A fraction; a plain one of numbers is small."""
-        small = isinstance(above, Number) and isinstance(below, Number)
+        small = isinstance(above, Numeral) and isinstance(below, Numeral)
         command = r"\tfrac" if small else r"\frac"
         return rf"{command}{{{self.whole(above)}}}{{{self.whole(below)}}}"
 
@@ -166,7 +175,7 @@ class Latex(Writer):
         """A function."""
         return self._called(self._function(name), arguments, bare)
 
-    def called_power(self, call: Call, exponent: Math, *, bare: bool) -> str:
+    def called_power(self, call: FunctionCall, exponent: Math, *, bare: bool) -> str:
         """``sin² x``."""
         if call.name == "abs":
             return self.raised(self.write(call), exponent)
@@ -206,14 +215,14 @@ def _wide(tree: Math) -> bool:
     match tree:
         case Name(letter, subs):
             return len(letter) > 1 or bool(subs and not subs[0].isdigit())
-        case Number():
+        case Numeral():
             return False
-        case Product() | Quotient():
+        case Product() | Fraction():
             return isinstance(tree, Product)
     base = getattr(tree, "base", tree)
     if isinstance(base, Name):
         return _wide(base)
-    return isinstance(base, Call)
+    return isinstance(base, FunctionCall)
 
 
 __all__ = ["SIDES", "Latex", "escaped"]

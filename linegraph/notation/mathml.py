@@ -6,7 +6,7 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from linegraph.notation.latex import _wide
-from linegraph.notation.tree import TRANSPOSED, Call, Math, Name, Number, Raw
+from linegraph.notation.tree import TRANSPOSED, FunctionCall, Math, Name, Numeral, Raw
 from linegraph.notation.writing import ATOM, SUM, Writer, digits, numbered, solid, visible
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ class MathMl(Writer):
         """A thin space beside words, the sign of multiplication between numbers."""
         if sign:
             return f"<mo>{sign}</mo>"
-        if isinstance(left, Number) and isinstance(right, Number):
+        if isinstance(left, Numeral) and isinstance(right, Numeral):
             return "<mo>·</mo>"
         return THIN if _wide(left) or _wide(right) else "<mo>\u2062</mo>"
 
@@ -123,7 +123,7 @@ class MathMl(Writer):
             return f'<mrow><mo stretchy="false">|</mo>{inner}<mo stretchy="false">|</mo></mrow>'
         return self._called(element("mi", name), arguments, bare)
 
-    def called_power(self, call: Call, exponent: Math, *, bare: bool) -> str:
+    def called_power(self, call: FunctionCall, exponent: Math, *, bare: bool) -> str:
         """``sin² x``."""
         if call.name == "abs":
             return self.raised(self.write(call), exponent)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.notation.tree import Call, Math, Name, Number, Raw
+from linegraph.notation.tree import FunctionCall, Math, Name, Numeral, Raw
 from linegraph.notation.writing import (
     ATOM,
     POWER,
@@ -71,9 +71,9 @@ class Plain(Writer):
         """Always with brackets."""
         return f"{name}({', '.join(self.whole(a) for a in arguments)})"
 
-    def called_power(self, call: Call, exponent: Math, *, bare: bool) -> str:
+    def called_power(self, call: FunctionCall, exponent: Math, *, bare: bool) -> str:
         """``sin²(x)``."""
-        if isinstance(exponent, Number) and exponent.text.isdigit():
+        if isinstance(exponent, Numeral) and exponent.text.isdigit():
             inner = ", ".join(self.whole(a) for a in call.arguments)
             return f"{call.name}{exponent.text.translate(SUPERSCRIPTS)}({inner})"
         return self.raised(self.bracketed(self.write(call)), exponent)

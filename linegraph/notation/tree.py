@@ -17,8 +17,8 @@ MASS, GRAVITY, LENGTH, OTHER, COORDINATE, FUNCTION, RATE, ACCELERATION, INPUT = 
 """What a name stands for; the order of factors."""
 
 Math: TypeAlias = (
-    "Name | Number | Sum | Product | Quotient | Power | Root | Call | Listed | Grid | Relation | "
-    "Over | Raw"
+    "Name | Numeral | Sum | Product | Fraction | Power | Root | FunctionCall | Components | Grid | "
+    "TwoSides | Over | Raw"
 )
 
 
@@ -51,7 +51,7 @@ class Name:
 
 
 @dataclass(frozen=True)
-class Number:
+class Numeral:
     """A number as it is written, without its sign, such as ``2.5`` or ``3e-5``.
 
     Attributes:
@@ -78,7 +78,7 @@ class Product:
 
 
 @dataclass(frozen=True)
-class Quotient:
+class Fraction:
     """A fraction."""
 
     above: Math
@@ -101,7 +101,7 @@ class Root:
 
 
 @dataclass(frozen=True)
-class Call:
+class FunctionCall:
     """A function of something."""
 
     name: str
@@ -109,7 +109,7 @@ class Call:
 
 
 @dataclass(frozen=True)
-class Listed:
+class Components:
     """Components in brackets: (x, y, z)."""
 
     entries: tuple[Math, ...]
@@ -123,7 +123,7 @@ class Grid:
 
 
 @dataclass(frozen=True)
-class Relation:
+class TwoSides:
     """Two sides."""
 
     left: Math
@@ -171,19 +171,19 @@ def parts(tree: Math) -> tuple[Math, ...]:
             return tuple(term for _, term in terms)
         case Product(factors):
             return factors
-        case Quotient(above, below):
+        case Fraction(above, below):
             return (above, below)
         case Power(base, exponent):
             return (base, exponent)
         case Root(of):
             return (of,)
-        case Call(_, arguments):
+        case FunctionCall(_, arguments):
             return arguments
-        case Listed(entries):
+        case Components(entries):
             return entries
         case Grid(rows):
             return tuple(entry for row in rows for entry in row)
-        case Relation(left, _, right):
+        case TwoSides(left, _, right):
             return (left, right)
         case Over(_, _, body):
             return (body,)
@@ -196,7 +196,7 @@ def traits(tree: Math) -> Traits:
         rates = tree.role in (RATE, ACCELERATION)
         return Traits(tree.role, tree.role, 0, int(rates), ((tree.role, tree.place),))
     found = [traits(part) for part in parts(tree)]
-    called = isinstance(tree, Call)
+    called = isinstance(tree, FunctionCall)
     return Traits(
         max([FUNCTION if called else -1, *(t.highest for t in found)]),
         min([OTHER, *(t.lowest for t in found)]),
@@ -213,9 +213,11 @@ def _factor_key(tree: Math) -> tuple[Any, ...]:
     base = tree.base if isinstance(tree, Power) else tree
     if isinstance(base, Name):
         return (float(base.role), base.place, (base.letter, base.subs, base.dots))
-    if isinstance(base, Number) or (isinstance(base, Quotient) and isinstance(base.below, Number)):
+    if isinstance(base, Numeral) or (
+        isinstance(base, Fraction) and isinstance(base.below, Numeral)
+    ):
         return (-1.0, 0, ())
-    if isinstance(base, Call):
+    if isinstance(base, FunctionCall):
         place = _CALLS.index(base.name) if base.name in _CALLS else len(_CALLS)
         return (float(FUNCTION), place, tuple(repr(a) for a in base.arguments))
     return (traits(base).rank, 0, (repr(base),))
@@ -224,7 +226,7 @@ def _factor_key(tree: Math) -> tuple[Any, ...]:
 def _term_key(tree: Math) -> tuple[Any, ...]:
     """Accelerations, rates, the rest with constants first, numbers, inputs; shorter before longer."""
     found = traits(tree)
-    kind = 3 if isinstance(tree, Number) else 2
+    kind = 3 if isinstance(tree, Numeral) else 2
     if found.highest == INPUT:
         kind = 4
     elif found.highest == ACCELERATION:
@@ -255,14 +257,14 @@ def _powers(factors: list[Math]) -> list[Math]:
     found: list[tuple[Math, int]] = []
     for factor in factors:
         base, count = factor, 1
-        if isinstance(factor, Power) and isinstance(factor.exponent, Number):
+        if isinstance(factor, Power) and isinstance(factor.exponent, Numeral):
             digits = factor.exponent.text
             base, count = (factor.base, int(digits)) if digits.isdigit() else (factor, 1)
-        if found and found[-1][0] == base and not isinstance(base, Number):
+        if found and found[-1][0] == base and not isinstance(base, Numeral):
             found[-1] = (base, found[-1][1] + count)
         else:
             found.append((base, count))
-    return [base if n == 1 else Power(base, Number(str(n))) for base, n in found]
+    return [base if n == 1 else Power(base, Numeral(str(n))) for base, n in found]
 
 
 def total(terms: Iterable[tuple[bool, Math]], *, ordered: bool = True) -> Math:
@@ -294,11 +296,11 @@ def negated(tree: Math) -> Math:
 
 def rounded(tree: Math) -> bool:
     """Whether a number in it lacks digits."""
-    if isinstance(tree, Number):
+    if isinstance(tree, Numeral):
         return tree.rounded
     return any(rounded(part) for part in parts(tree))
 
 
-ZERO, ONE = Number("0"), Number("1")
+ZERO, ONE = Numeral("0"), Numeral("1")
 TRANSPOSED = Name("T")
 """The exponent of a transposed matrix."""

@@ -12,20 +12,20 @@ import unicodedata
 from typing import TYPE_CHECKING
 
 from linegraph.notation.tree import (
-    Call,
+    Components,
+    Fraction,
+    FunctionCall,
     Grid,
-    Listed,
     Math,
     Name,
-    Number,
+    Numeral,
     Over,
     Power,
     Product,
-    Quotient,
     Raw,
-    Relation,
     Root,
     Sum,
+    TwoSides,
 )
 
 if TYPE_CHECKING:
@@ -120,15 +120,15 @@ class Writer:
     def tightness(self, tree: Math) -> int:
         """How tightly a tree holds together."""
         match tree:
-            case Relation():
+            case TwoSides():
                 return SIDES
             case Sum() | Raw():
                 return SUM
             case Product() | Over():
                 return PRODUCT
-            case Quotient():
+            case Fraction():
                 return PRODUCT
-            case Power() | Call():
+            case Power() | FunctionCall():
                 return POWER
         return ATOM
 
@@ -137,25 +137,25 @@ class Writer:
         match tree:
             case Name():
                 return self.name(tree)
-            case Number(text):
+            case Numeral(text):
                 return self.number(text)
             case Sum(terms):
                 return self._sum(terms)
             case Product(factors, sign):
                 return self.product(factors, sign)
-            case Quotient(above, below):
+            case Fraction(above, below):
                 return self.quotient(above, below)
             case Power(base, exponent):
                 return self.power(base, exponent)
             case Root(of):
                 return self.root(of)
-            case Call(name, arguments):
+            case FunctionCall(name, arguments):
                 return self.call(name, arguments, bare=True)
-            case Listed(entries):
+            case Components(entries):
                 return self.bracketed(self.comma.join(self.whole(e) for e in entries))
             case Grid(rows):
                 return self.grid([[self.whole(e) for e in row] for row in rows])
-            case Relation(left, sign, right):
+            case TwoSides(left, sign, right):
                 return f"{self.held(left, SUM)}{self.related(sign)}{self.held(right, SUM)}"
             case Over(sign, under, body):
                 return self.over(sign, under, body)
@@ -190,7 +190,7 @@ class Writer:
             if _function(factor) and follows is not None and not (_function(follows) and not sign):
                 found.append(self.closed(factor))
             else:
-                level = PRODUCT if self.fractions and isinstance(factor, Quotient) else POWER
+                level = PRODUCT if self.fractions and isinstance(factor, Fraction) else POWER
                 found.append(self.held(factor, level))
         text = found[0]
         for k, part in enumerate(found[1:], 1):
@@ -202,14 +202,14 @@ class Writer:
 
     def closed(self, tree: Math) -> str:
         """A function, or a power of one, with its argument in brackets."""
-        if isinstance(tree, Power) and isinstance(tree.base, Call):
+        if isinstance(tree, Power) and isinstance(tree.base, FunctionCall):
             return self.called_power(tree.base, tree.exponent, bare=False)
-        assert isinstance(tree, Call)
+        assert isinstance(tree, FunctionCall)
         return self.call(tree.name, tree.arguments, bare=False)
 
     def power(self, base: Math, exponent: Math) -> str:
         """A power; of a function that of its name."""
-        if isinstance(base, Call) and isinstance(exponent, Number):
+        if isinstance(base, FunctionCall) and isinstance(exponent, Numeral):
             return self.called_power(base, exponent, bare=True)
         return self.raised(solid(self.held(base, ATOM)), exponent)
 
@@ -261,7 +261,7 @@ class Writer:
         """A function; `bare` where a single name needs no brackets."""
         raise NotImplementedError
 
-    def called_power(self, call: Call, exponent: Math, *, bare: bool) -> str:
+    def called_power(self, call: FunctionCall, exponent: Math, *, bare: bool) -> str:
         """A power of a function."""
         raise NotImplementedError
 
@@ -280,4 +280,4 @@ class Writer:
 
 def _function(tree: Math) -> bool:
     base = tree.base if isinstance(tree, Power) else tree
-    return isinstance(base, Call)
+    return isinstance(base, FunctionCall)

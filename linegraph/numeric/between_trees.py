@@ -13,7 +13,7 @@ from linegraph.components.joints import Free, Spherical
 from linegraph.kinematics.arms import arms
 from linegraph.kinematics.ground_frames import (
     GROUND_FRAME,
-    Frame,
+    GroundFrame,
     frames,
     relative_motion,
     seated,
@@ -75,7 +75,7 @@ def _copied(
     return True
 
 
-def body_frames(numeric: Numeric, q: Sequence[float], v: Sequence[float]) -> dict[str, Frame]:
+def body_frames(numeric: Numeric, q: Sequence[float], v: Sequence[float]) -> dict[str, GroundFrame]:
     """The motion of every body's own frame."""
     tree = numeric.tree
     moving = frames(tree, numeric.algebra, arms(tree, numeric.algebra, q, v))
@@ -85,7 +85,7 @@ def body_frames(numeric: Numeric, q: Sequence[float], v: Sequence[float]) -> dic
     }
 
 
-def _link_frame(tree: KinematicTree, index: int, bodies: dict[str, Frame]) -> Frame:
+def _link_frame(tree: KinematicTree, index: int, bodies: dict[str, GroundFrame]) -> GroundFrame:
     """A link's working frame, from a body that is part of it."""
     body, pose = next((b, pose) for b, (link, pose) in tree.bodies.items() if link == index)
     back = transpose(pose.rotation)
@@ -93,7 +93,9 @@ def _link_frame(tree: KinematicTree, index: int, bodies: dict[str, Frame]) -> Fr
     return bodies[body].at((-x, -y, -z), back)
 
 
-def _measure(numeric: Numeric, link: Link, near: Frame, far: Frame, found: State) -> None:
+def _measure(
+    numeric: Numeric, link: Link, near: GroundFrame, far: GroundFrame, found: State
+) -> None:
     """Write a joint's coordinates and velocities into the state."""
     if link.place.drive or any(f.ratio != 1 or f.offset != 0 for f in link.place.positions):
         return

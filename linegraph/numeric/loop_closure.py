@@ -17,7 +17,7 @@ from linegraph.tolerance import CLOSED, DEPENDENT
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from linegraph.dynamics.chords import Chords, Equation
+    from linegraph.dynamics.chords import ChordEquation, Chords
     from linegraph.kinematics.formulated import Formulated
     from linegraph.kinematics.links import Closure, KinematicTree
     from linegraph.numeric.reference import Numeric
@@ -84,7 +84,7 @@ class Search:
                     found[freedom.index] = float(length)
         return found
 
-    def _by_input(self, equation: Equation) -> bool:
+    def _by_input(self, equation: ChordEquation) -> bool:
         """Whether a constraint prescribes a motion that comes from inputs."""
         closure = self.tree.ends[equation.component]
         component = closure.component

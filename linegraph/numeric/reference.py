@@ -11,7 +11,7 @@ from linegraph.components.parameters import Parameter, resolver, valued
 from linegraph.dynamics import orthogonality
 from linegraph.dynamics.applied_forces import Applied, applied
 from linegraph.dynamics.chords import Chords, equations
-from linegraph.dynamics.circuit_lengths import Given, Sizes, sizes
+from linegraph.dynamics.circuit_lengths import ConstraintSizes, Given, sizes
 from linegraph.dynamics.law_names import relations
 from linegraph.dynamics.mass_matrix import mass_matrix
 from linegraph.dynamics.whole_system import (
@@ -104,7 +104,7 @@ class Numeric:
         return united_inverse_dynamics(self.tree, self.algebra, crossed, entries, a, acting)
 
     @cached_property
-    def sizes(self) -> Sizes:
+    def sizes(self) -> ConstraintSizes:
         """What constraints and velocities are measured by."""
         given = Given(self.tree, self.algebra, self.parameters)
         return sizes(given, equations(self.tree))

@@ -9,7 +9,7 @@ from linegraph.components.joints import Compound
 from linegraph.formulation.formulate import DEPTH, INERTIA_WEIGHT, NOTHING_ACTS, edge_weights
 from linegraph.model.choices import ABSOLUTE, JOINT
 from linegraph.notation.expressions import number
-from linegraph.report.document import Block, Code, Inline, Section, Table, Text, said
+from linegraph.report.document import Block, CellTable, Code, Inline, Section, Text, said
 from linegraph.report.graphs import called
 from linegraph.report.system import count, listed
 
@@ -58,7 +58,7 @@ def _mechanical(subject: Subject) -> list[Block]:
         branch = edge.name in branches
         role = (Code("branch", strong=True),) if branch else ("chord",)
         rows.append(((Code(edge.name),), shown, role, _because(subject, edge)))
-    blocks.append(Table(("edge", "weight", "role", "made up of"), tuple(rows)))
+    blocks.append(CellTable(("edge", "weight", "role", "made up of"), tuple(rows)))
     blocks += [said(*text) for text in _wishes(subject)]
     blocks += [said(*text) for text in _cuts(subject, found)]
     if formulation.level:
@@ -166,7 +166,7 @@ def _normal(subject: Subject) -> list[Block]:
                 what += ", a state" if store.key in states else ", depends on others"
             rows.append(((Code(edge.name),), role, (what,)))
         title = f"{called(topology.projection.domain)}: edge"
-        blocks.append(Table((title, "role", "what it is"), tuple(rows)))
+        blocks.append(CellTable((title, "role", "what it is"), tuple(rows)))
     for edge_name, on in network.dependent.items():
         excess: list[Inline] = ["The store ", Code(edge_name), " is in excess: "]
         reason: list[Inline] = ["it follows from ", Code(", ".join(on))]

@@ -6,20 +6,20 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from linegraph.notation.tree import (
-    Call,
+    Components,
+    Fraction,
+    FunctionCall,
     Grid,
-    Listed,
     Math,
     Name,
-    Number,
+    Numeral,
     Over,
     Power,
     Product,
-    Quotient,
     Raw,
-    Relation,
     Root,
     Sum,
+    TwoSides,
 )
 
 if TYPE_CHECKING:
@@ -49,16 +49,16 @@ Text: TypeAlias = tuple[Inline, ...]
 
 FORMULA = (
     Name,
-    Number,
+    Numeral,
     Sum,
     Product,
-    Quotient,
+    Fraction,
     Power,
     Root,
-    Call,
-    Listed,
+    FunctionCall,
+    Components,
     Grid,
-    Relation,
+    TwoSides,
     Over,
     Raw,
 )
@@ -73,7 +73,7 @@ class Paragraph:
 
 
 @dataclass(frozen=True)
-class Table:
+class CellTable:
     """Rows of cells under a head."""
 
     head: tuple[str, ...]
@@ -95,7 +95,7 @@ class Matrix:
 
 
 @dataclass(frozen=True)
-class Row:
+class EquationRow:
     """One equation; without a left side it goes on from the one before."""
 
     left: Math
@@ -107,7 +107,7 @@ class Row:
 class Formulas:
     """Equations below each other."""
 
-    rows: tuple[Row, ...]
+    rows: tuple[EquationRow, ...]
 
 
 @dataclass(frozen=True)
@@ -115,11 +115,11 @@ class Group:
     """Named intermediates that belong together."""
 
     label: str
-    rows: tuple[Row, ...]
+    rows: tuple[EquationRow, ...]
 
 
 @dataclass(frozen=True)
-class Listing:
+class IntermediateList:
     """Intermediates in the order in which they are computed."""
 
     groups: tuple[Group, ...]
@@ -142,7 +142,9 @@ class Section:
     blocks: tuple[Block, ...]
 
 
-Block: TypeAlias = "Paragraph | Table | Matrix | Formulas | Listing | Picture | Section"
+Block: TypeAlias = (
+    "Paragraph | CellTable | Matrix | Formulas | IntermediateList | Picture | Section"
+)
 
 
 @dataclass(frozen=True)
@@ -167,11 +169,11 @@ def formulas(blocks: tuple[Block, ...]) -> Iterator[Math]:
         match block:
             case Paragraph(text):
                 yield from _of(text)
-            case Table(_, rows):
+            case CellTable(_, rows):
                 yield from (m for row in rows for cell in row for m in _of(cell))
             case Formulas(rows):
                 yield from (side for row in rows for side in (row.left, row.right))
-            case Listing(groups):
+            case IntermediateList(groups):
                 yield from (x for g in groups for row in g.rows for x in (row.left, row.right))
             case Section(_, inner):
                 yield from formulas(inner)

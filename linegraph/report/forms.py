@@ -25,7 +25,15 @@ from linegraph.notation.tree import (
 )
 from linegraph.notation.writing import pieces
 from linegraph.programs.workspace import Functions
-from linegraph.report.document import Block, Code, Formulas, Inline, Listing, Row, Section, said
+from linegraph.report.document import (
+    Block,
+    Code,
+    EquationRow,
+    Formulas,
+    Inline,
+    Section,
+    said,
+)
 from linegraph.report.intermediates import listed_program
 from linegraph.report.laws import vector
 from linegraph.report.system import letter, listed, motion_equation
@@ -176,7 +184,7 @@ class Forms:
         entries = [self._nodes(x, entries=True) for x in efforts if leaves(x) <= MOST_LEAVES]
         if len(entries) < len(efforts) or len(str(entries)) > MOST_WRITTEN:
             return [said("Q is listed with the functions that `emit` writes.")]
-        rows = [Row(Name("Q", (str(k),)), x) for k, x in enumerate(entries, 1)]
+        rows = [EquationRow(Name("Q", (str(k),)), x) for k, x in enumerate(entries, 1)]
         return [said("The forces are"), Formulas(tuple(rows))]
 
     def _nodes(self, x: Any, *, entries: bool = False) -> Math:
@@ -202,7 +210,7 @@ class Forms:
             return []
         widths = [max(len(Plain()(row[j])) for row in tree.rows) for j in range(len(tree.rows[0]))]
         if sum(widths) + 2 * len(widths) <= WIDEST_GRID:
-            return [Formulas((Row(letter(name), tree),))]
+            return [Formulas((EquationRow(letter(name), tree),))]
         rows = []
         for i, row in enumerate(tree.rows):
             for j, entry in enumerate(row):
@@ -211,9 +219,9 @@ class Forms:
                 subs = (str(i + 1), str(j + 1)) if len(row) > 1 else (str(i + 1),)
                 left: Math = Name(name, subs)
                 if symmetric and j > i and entry == tree.rows[j][i]:
-                    rows.append(Row(left, entry))
+                    rows.append(EquationRow(left, entry))
                     continue
-                rows.append(Row(left, entry))
+                rows.append(EquationRow(left, entry))
         twin = " M is symmetric; entries below its diagonal are not repeated." * symmetric
         missing = (
             " Entries that are not shown are zero." if len(rows) < sum(map(len, tree.rows)) else ""
@@ -235,7 +243,7 @@ class Forms:
         f = self._functions
         rates = coordinate_rates(f.tree, f.dag, f.q, f.v)
         rows = [
-            Row(Name(n.letter, n.subs, n.dots + 1), self._nodes(x))
+            EquationRow(Name(n.letter, n.subs, n.dots + 1), self._nodes(x))
             for n, x in zip(subject.symbols(subject.q_names), rates, strict=True)
             if isinstance(n, Name) and f"{n}" and self._nodes(x) != n.rate()
         ]
@@ -245,7 +253,9 @@ class Forms:
         self._tell("constraints")
         subject = self._subject
         rows = [
-            Row(letter("λ"), Grid(tuple((subject.look.name(q.name),) for q in subject.multipliers)))
+            EquationRow(
+                letter("λ"), Grid(tuple((subject.look.name(q.name),) for q in subject.multipliers))
+            )
         ]
         text = (
             "The circuit equations of the chords, projected on the directions in which these react, are "
@@ -307,14 +317,14 @@ class Forms:
             if subject.tree.closed and J is None:
                 row = Power(Name("J", bold=True), TRANSPOSED)
                 right.append((False, Name("(Jᵀλ)", (str(i + 1),)) if row else ZERO))
-            rows.append(Row(total(left, ordered=False), total(right)))
+            rows.append(EquationRow(total(left, ordered=False), total(right)))
         return Section("Written out", (Formulas(tuple(rows)),))
 
     def _energy(self) -> Section:
         self._tell("energy")
         names = ("T", "V", "W")
         rows = [
-            Row(Name(n), self.tree(x))
+            EquationRow(Name(n), self.tree(x))
             for n, x in zip(names, self._energies, strict=False)
             if x != 0
         ]
@@ -342,8 +352,8 @@ class Forms:
             for joint in subject.model.joints:
                 force, torque = self.closed.reaction(joint.name)
                 rows = (
-                    Row(vector("f", joint.name), self.tree(force)),
-                    Row(vector("τ", joint.name), self.tree(torque)),
+                    EquationRow(vector("f", joint.name), self.tree(force)),
+                    EquationRow(vector("τ", joint.name), self.tree(torque)),
                 )
                 blocks.append(Formulas(tuple(r for row in rows for r in _components(row))))
         else:
@@ -357,7 +367,7 @@ class Forms:
         return Section("Reactions", tuple(blocks))
 
 
-def _components(row: Row) -> list[Row]:
+def _components(row: EquationRow) -> list[EquationRow]:
     """A vector as one where it fits, else by components."""
     assert isinstance(row.right, Grid)
     assert isinstance(row.left, Name)
@@ -365,7 +375,7 @@ def _components(row: Row) -> list[Row]:
         return [row]
     left = row.left
     return [
-        Row(Name(left.letter, (*left.subs, axis)), entry)
+        EquationRow(Name(left.letter, (*left.subs, axis)), entry)
         for axis, (entry,) in zip("xyz", row.right.rows, strict=True)
         if entry != ZERO
     ]
@@ -387,4 +397,4 @@ def _signed(entry: Math, by: Math) -> Math:
     return Product((entry, by))
 
 
-__all__ = ["Forms", "Listing"]
+__all__ = ["Forms"]

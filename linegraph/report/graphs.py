@@ -12,13 +12,13 @@ from linegraph.errors import ModelError
 from linegraph.notation.tree import ZERO, Name
 from linegraph.report.document import (
     Block,
+    CellTable,
     Code,
+    EquationRow,
     Formulas,
     Matrix,
     Picture,
-    Row,
     Section,
-    Table,
     Text,
     said,
 )
@@ -76,7 +76,7 @@ def terminal_graphs(subject: Subject) -> Section:
         )
     text += f" All edges are in {places.pop()}." if alike else ""
     head = ("component", "edge", "tail → head", *([] if alike else ["subspace"]))
-    return Section("Terminal graphs of the components", (said(text), Table(head, tuple(rows))))
+    return Section("Terminal graphs of the components", (said(text), CellTable(head, tuple(rows))))
 
 
 def system_graph(subject: Subject) -> Section:
@@ -199,23 +199,23 @@ def _as_matrices(subject: Subject, domain: str, topology: Topology, again: bool)
     ]  # fmt: skip
 
 
-def _length(row: Row) -> int:
+def _length(row: EquationRow) -> int:
     """Summands, at least two."""
     return len(getattr(row.left, "terms", ())) or MOST_WRITTEN
 
 
-def _cut(subject: Subject, domain: str, topology: Topology, row: int) -> Row:
+def _cut(subject: Subject, domain: str, topology: Topology, row: int) -> EquationRow:
     """A cutset equation."""
     first = subject.through(domain, topology.cutset.rows[row])
     of = partial(subject.through, domain)
-    return Row(subject.combined(topology.cutset, row, first, of), ZERO)
+    return EquationRow(subject.combined(topology.cutset, row, first, of), ZERO)
 
 
-def _circuit(subject: Subject, domain: str, topology: Topology, row: int) -> Row:
+def _circuit(subject: Subject, domain: str, topology: Topology, row: int) -> EquationRow:
     """A circuit equation."""
     first = subject.across(domain, topology.circuit.rows[row])
     of = partial(subject.across, domain)
-    return Row(subject.combined(topology.circuit, row, first, of), ZERO)
+    return EquationRow(subject.combined(topology.circuit, row, first, of), ZERO)
 
 
 def _equations(subject: Subject, domain: str, topology: Topology) -> list[Block]:

@@ -15,16 +15,16 @@ from linegraph.notation.plain import Plain
 from linegraph.notation.writing import pieces, visible
 from linegraph.report.document import (
     Block,
+    CellTable,
     Code,
     Document,
+    EquationRow,
     Formulas,
-    Listing,
+    IntermediateList,
     Matrix,
     Paragraph,
     Picture,
-    Row,
     Section,
-    Table,
     Text,
 )
 from linegraph.report.style import STYLE
@@ -108,13 +108,13 @@ def _block(block: Block) -> Iterator[str]:
     match block:
         case Paragraph(text):
             yield f"<p>{said(text)}</p>"
-        case Table(head, rows):
+        case CellTable(head, rows):
             yield from _table(head, rows)
         case Matrix():
             yield from _matrix(block.matrix)
         case Formulas(rows):
             yield from _formulas(rows)
-        case Listing(groups):
+        case IntermediateList(groups):
             yield '<div class="listing">'
             for group in groups:
                 yield f'<p class="label">{shown(group.label)}</p>'
@@ -158,7 +158,7 @@ def _pieces(tree: Math) -> list[str]:
     return [piece for _, piece in pieces(text)]
 
 
-def _formulas(rows: Sequence[Row]) -> Iterator[str]:
+def _formulas(rows: Sequence[EquationRow]) -> Iterator[str]:
     longest = max((len(Plain()(row.left)) + len(Plain()(row.right)) for row in rows), default=0)
     columns = len(rows) >= MANY and longest <= SHORT
     yield f'<div class="eqs{" many" * columns}">'

@@ -9,7 +9,7 @@ from linegraph.ir.dag import SYMBOL, Node
 from linegraph.ir.program import Program
 from linegraph.notation.tree import FUNCTION, ZERO, Math, Name
 from linegraph.programs.register import module_of
-from linegraph.report.document import Group, Listing, Row
+from linegraph.report.document import EquationRow, Group, IntermediateList
 from linegraph.report.nodes import Nodes
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def symbols_of(subject: Subject, *, entries: bool = False) -> Callable[[str, Any
     return symbol
 
 
-def listed_program(subject: Subject, which: str) -> tuple[Listing, list[Row], int]:
+def listed_program(subject: Subject, which: str) -> tuple[IntermediateList, list[EquationRow], int]:
     """The steps of a program, its results, and how many operations it has."""
     only, shown = ONLY[which]
     module = module_of(
@@ -81,12 +81,12 @@ def listed_program(subject: Subject, which: str) -> tuple[Listing, list[Row], in
     )
     programs = [p for p in module.programs if isinstance(p, Program) and p.name in shown]
     groups: list[Group] = []
-    results: list[Row] = []
+    results: list[EquationRow] = []
     listing = _Steps(subject)
     for program in programs:
         groups += listing.groups(program)
         results += listing.results(program)
-    return Listing(tuple(groups)), results, sum(program.operations for program in programs)
+    return IntermediateList(tuple(groups)), results, sum(program.operations for program in programs)
 
 
 class _Steps:
@@ -113,7 +113,7 @@ class _Steps:
         for (index, turned), name in self._known.items():
             if turned == (index in program.turned):
                 self._nodes.known[index] = name
-        found: list[tuple[str, list[Row]]] = []
+        found: list[tuple[str, list[EquationRow]]] = []
         for node in program.steps:
             if not found or found[-1][0] != node.label:
                 found.append((node.label, []))
@@ -123,7 +123,7 @@ class _Steps:
             name = self._name(node)
             self._nodes.known[node.index] = name
             self._known[node.index, node.index in program.turned] = name
-            found[-1][1].append(Row(name, right))
+            found[-1][1].append(EquationRow(name, right))
         return [Group(label.replace("->", "→"), tuple(rows)) for label, rows in found if rows]
 
     def _name(self, node: Node) -> Name:
@@ -133,7 +133,7 @@ class _Steps:
         self._count += 1
         return Name(self._letter, (str(self._count),), place=self._count)
 
-    def results(self, program: Program) -> list[Row]:
+    def results(self, program: Program) -> list[EquationRow]:
         """What a program returns; what is zero, or stands there already, is left out."""
         rows = []
         for result in program.results:
@@ -150,7 +150,7 @@ class _Steps:
                 tree = self._nodes(entry)
                 if tree == ZERO:
                     continue
-                rows.append(Row(self._result(result.name, i, j, bool(columns)), tree))
+                rows.append(EquationRow(self._result(result.name, i, j, bool(columns)), tree))
         return rows
 
     def _result(self, name: str, i: int, j: int, square: bool) -> Name:

@@ -11,17 +11,17 @@ from linegraph.notation.tree import Name
 from linegraph.notation.writing import pieces
 from linegraph.report.document import (
     Block,
+    CellTable,
     Code,
     Document,
+    EquationRow,
     Formulas,
     Group,
-    Listing,
+    IntermediateList,
     Matrix,
     Paragraph,
     Picture,
-    Row,
     Section,
-    Table,
     Text,
 )
 from linegraph.report.lines import broken, typeset
@@ -113,13 +113,13 @@ def _block(block: Block) -> list[str]:
     match block:
         case Paragraph(text):
             return [said(text)]
-        case Table(head, rows):
+        case CellTable(head, rows):
             return _table(head, rows)
         case Matrix():
             return _matrix(block.matrix)
         case Formulas(rows):
             return _display(rows)
-        case Listing(groups):
+        case IntermediateList(groups):
             return _listing(groups)
         case Picture(scene, about):
             drawn = picture(scene, WIDE, HIGH if block.topology else LOW)
@@ -156,7 +156,7 @@ def breakable(text: str) -> str:
     return shown
 
 
-def aligned(rows: Sequence[Row], width: int) -> list[str]:
+def aligned(rows: Sequence[EquationRow], width: int) -> list[str]:
     """Equations below each other, long ones broken; aligned at their signs where the left sides are short."""
     level = all(isinstance(row.left, Name) for row in rows)
     lines: list[str] = []
@@ -167,7 +167,7 @@ def aligned(rows: Sequence[Row], width: int) -> list[str]:
     return lines
 
 
-def _named(row: Row, width: int) -> list[str]:
+def _named(row: EquationRow, width: int) -> list[str]:
     """A name and what it is."""
     used = typeset(Plain()(row.left)) + 3
     first, *others = broken(row.right, Latex(), width - 4, max(0, used - 4), typeset)
@@ -175,7 +175,7 @@ def _named(row: Row, width: int) -> list[str]:
     return [f"{left} &{row.sign} {first}", *(rf"&\qquad {line}" for line in others)]
 
 
-def _broken(row: Row, width: int) -> list[str]:
+def _broken(row: EquationRow, width: int) -> list[str]:
     """Both sides in a row."""
     lines = broken(row.left, Latex(), width - 4, 0, typeset)
     used = typeset(Plain()(row.left)) + 3 if len(lines) == 1 else width // 2
@@ -184,7 +184,7 @@ def _broken(row: Row, width: int) -> list[str]:
     return [f"&{lines[0]}", *(rf"&\qquad {line}" for line in (*lines[1:], *others))]
 
 
-def _display(rows: Sequence[Row]) -> list[str]:
+def _display(rows: Sequence[EquationRow]) -> list[str]:
     size = max(typeset(Plain()(row.left)) + _solid(row) for row in rows)
     length = max(typeset(Plain()(row.right)) for row in rows)
     if len(rows) >= MANY and size <= HALF and length <= WIDTH:
@@ -208,12 +208,12 @@ def _listing(groups: Sequence[Group]) -> list[str]:
     return [*lines, r"\end{multicols}}"]
 
 
-def _solid(row: Row) -> int:
+def _solid(row: EquationRow) -> int:
     """The longest part in which TeX finds no place to break."""
     return max(typeset(piece) for _, piece in pieces(Plain().marked(row.right)))
 
 
-def _step(row: Row) -> str:
+def _step(row: EquationRow) -> str:
     return rf"\step{{${Latex()(row.left)} {row.sign} {Latex()(row.right)}$}}"
 
 

@@ -17,17 +17,27 @@ from linegraph.notation.expressions import number
 from linegraph.notation.plain import Plain
 from linegraph.notation.tree import (
     ZERO,
-    Listed,
+    Components,
     Math,
     Name,
     Over,
     Product,
-    Relation,
     Sum,
+    TwoSides,
     negated,
     total,
 )
-from linegraph.report.document import Block, Code, Formulas, Inline, Row, Section, Table, Text, said
+from linegraph.report.document import (
+    Block,
+    CellTable,
+    Code,
+    EquationRow,
+    Formulas,
+    Inline,
+    Section,
+    Text,
+    said,
+)
 from linegraph.report.nodes import Nodes
 from linegraph.report.system import letter
 from linegraph.spatial.vector import times
@@ -88,13 +98,13 @@ def _bodies(subject: Subject) -> tuple[Block, ...]:
             if any(x != 0 for x in subject.model.gravity):
                 pull = Sum(((False, pull), (True, letter("g"))))
             factors = mass.factors if isinstance(mass, Product) else (mass,)
-            rows.append(Row(vector("f", edge), negated(Product((*factors, pull)))))
+            rows.append(EquationRow(vector("f", edge), negated(Product((*factors, pull)))))
         if any(x != 0 for x in body.inertia):
             spin = vector("ω", body.name)
             tensor = vector("J", body.name)
             terms = Sum(((False, Product((tensor, spin.rate()))),
                          (False, crossed(spin, Product((tensor, spin))))))  # fmt: skip
-            rows.append(Row(vector("τ", edge), negated(terms)))
+            rows.append(EquationRow(vector("τ", edge), negated(terms)))
     text = said(
         "The inertia edge of a body exerts d'Alembert's force and torque on its mass centre, the weight with "
         "it: here ", Name("r", bold=True), " is the position of the mass centre, ", Name("ω", bold=True),
@@ -106,10 +116,10 @@ def _bodies(subject: Subject) -> tuple[Block, ...]:
 
 def _joints(subject: Subject) -> tuple[Block, ...]:
     rows = []
-    long: list[Row] = []
+    long: list[EquationRow] = []
     for joint in subject.model.joints:
         moves, pushes = _joint(subject, joint)
-        found = [part for part in moves if isinstance(part, Relation)]
+        found = [part for part in moves if isinstance(part, TwoSides)]
         if sum(len(Plain()(part)) for part in found) > LONGEST_CELL:
             long += [row for part in found for row in _by_components(part)]
             moves = ("below",)
@@ -119,17 +129,17 @@ def _joints(subject: Subject) -> tuple[Block, ...]:
         "direction it holds it with a reaction that does no work, so only the power of its effort remains. "
         "Components are those in the axes of its head."
     )
-    table = Table(("joint", "motion of the head against the tail", "effort"), tuple(rows))
+    table = CellTable(("joint", "motion of the head against the tail", "effort"), tuple(rows))
     return (said(text), table, *([Formulas(tuple(long))] if long else []))
 
 
-def _by_components(part: Relation) -> list[Row]:
+def _by_components(part: TwoSides) -> list[EquationRow]:
     """A vector that is too long for a cell, component by component."""
     assert isinstance(part.left, Name)
-    assert isinstance(part.right, Listed)
+    assert isinstance(part.right, Components)
     subs = ((*part.left.subs, axis) for axis in "xyz")
     return [
-        Row(Name(part.left.letter, sub), entry)
+        EquationRow(Name(part.left.letter, sub), entry)
         for sub, entry in zip(subs, part.right.entries, strict=True)
     ]
 
@@ -150,7 +160,7 @@ def _joint(subject: Subject, joint: Joint) -> tuple[Text, Text]:
         trees = tuple(subject.expression(e) for e in entries)
         if any(tree != ZERO for tree in trees):
             shown += [", "] if shown else []
-            shown.append(Relation(vector(symbol, joint.name), "=", Listed(trees)))
+            shown.append(TwoSides(vector(symbol, joint.name), "=", Components(trees)))
     if not shown:
         shown.append("none")
     efforts: list[Inline] = []
@@ -193,14 +203,14 @@ def _constraints(subject: Subject) -> tuple[Block, ...]:
             )
         )
     text = "The across variable of a constraint is known and its through variable is not: a multiplier."
-    return (said(text), Table(("constraint", "type", "multipliers", "meaning"), tuple(rows)))
+    return (said(text), CellTable(("constraint", "type", "multipliers", "meaning"), tuple(rows)))
 
 
 # ---- force elements
 
 
 def _elements(subject: Subject) -> tuple[Block, ...]:
-    rows: list[Row] = []
+    rows: list[EquationRow] = []
     for element in subject.model.force_elements:
         rows += (
             _load(subject, element) if isinstance(element, Load) else [_element(subject, element)]
@@ -216,10 +226,10 @@ def _elements(subject: Subject) -> tuple[Block, ...]:
     return tuple(blocks)
 
 
-def _element(subject: Subject, element: Element) -> Row:
+def _element(subject: Subject, element: Element) -> EquationRow:
     x, v = element_motion(subject, element)
     law = element.through(subject.algebra, x, v, subject.resolve)
-    return Row(pull_of(element.name), subject.expression(law))
+    return EquationRow(pull_of(element.name), subject.expression(law))
 
 
 def pull_of(element: str) -> Name:
@@ -241,12 +251,12 @@ def element_motion(subject: Subject, element: Element) -> tuple[Any, Any]:
     return symbol("", name), symbol("", f"{name}_dot")
 
 
-def _load(subject: Subject, load: Load) -> list[Row]:
+def _load(subject: Subject, load: Load) -> list[EquationRow]:
     rows = []
     for symbol, parts in (("f", load.force), ("τ", load.torque)):
         value = subject.vector(parts)
         if value != ZERO:
-            rows.append(Row(vector(symbol, load.name), value))
+            rows.append(EquationRow(vector(symbol, load.name), value))
     return rows
 
 
@@ -259,15 +269,15 @@ def network_laws(subject: Subject) -> list[Block]:
     assert network is not None
     branch = {b.name: b for b in network.branches}
     trees = Nodes(lambda kind, place: _symbol(subject, branch, kind, place))
-    rows: list[Row] = []
+    rows: list[EquationRow] = []
     for static in network.laws.statics:
         rows.append(_solved(trees, static.zero))
     for store in (*network.laws.stores, *network.laws.spatial):
         change = Over("d/dt", "", trees(store.charge))
         right = total([(False, change), (False, trees(store.rest))], ordered=False)
-        rows.append(Row(_symbol(subject, branch, *store.dual), right))
+        rows.append(EquationRow(_symbol(subject, branch, *store.dual), right))
     for own in network.laws.own:
-        rows.append(Row(_symbol(subject, branch, *own.key).rate(), trees(own.rate)))  # type: ignore[union-attr]
+        rows.append(EquationRow(_symbol(subject, branch, *own.key).rate(), trees(own.rate)))  # type: ignore[union-attr]
     text = (
         "The laws of the components; what stores has the rate of its charge in it. A port in mechanics "
         "has the coordinate of its joint for its displacement and pulls it back."
@@ -275,13 +285,13 @@ def network_laws(subject: Subject) -> list[Block]:
     return [said(text), Formulas(tuple(rows))]
 
 
-def _solved(trees: Nodes, zero: Any) -> Row:
+def _solved(trees: Nodes, zero: Any) -> EquationRow:
     """``X = ...`` where a law is the difference of a variable and something."""
     if isinstance(zero, Node) and zero.op == SUB and isinstance(zero.a, Node):
         a, b = zero.a, zero.b
         if a.op == SYMBOL and a.a in ("X", "Y", "w"):
-            return Row(trees(a), trees(b))
-    return Row(trees(zero), ZERO)
+            return EquationRow(trees(a), trees(b))
+    return EquationRow(trees(zero), ZERO)
 
 
 def port_variables(subject: Subject, branch: Branch) -> tuple[Math, Math]:

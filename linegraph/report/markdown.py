@@ -10,16 +10,16 @@ from linegraph.notation.latex import Latex
 from linegraph.notation.writing import visible
 from linegraph.report.document import (
     Block,
+    CellTable,
     Code,
     Document,
+    EquationRow,
     Formulas,
-    Listing,
+    IntermediateList,
     Matrix,
     Paragraph,
     Picture,
-    Row,
     Section,
-    Table,
     Text,
 )
 from linegraph.report.latex import aligned
@@ -76,14 +76,14 @@ def _block(block: Block) -> str:
     match block:
         case Paragraph(text):
             return said(text)
-        case Table(head, rows):
+        case CellTable(head, rows):
             return _table(head, rows)
         case Matrix():
             lines = matrix_lines(block.matrix, 110)
             return "\n".join(["```text", *(line.replace("```", "'''") for line in lines), "```"])
         case Formulas(rows):
             return _formulas(rows)
-        case Listing(groups):
+        case IntermediateList(groups):
             return "\n\n".join(f"*{words(g.label)}*\n\n{_formulas(g.rows)}" for g in groups)
         case Picture():
             return _diagram(block) if block.topology is not None else ""
@@ -121,7 +121,7 @@ def safe(latex: str) -> str:
     )
 
 
-def _formulas(rows: tuple[Row, ...]) -> str:
+def _formulas(rows: tuple[EquationRow, ...]) -> str:
     lines = aligned(rows, WIDTH)
     body = "\n".join(safe(line) for line in lines)
     return f"$$\n\\begin{{aligned}}\n{body}\n\\end{{aligned}}\n$$"

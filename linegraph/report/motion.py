@@ -9,8 +9,8 @@ from linegraph.errors import ModelError
 from linegraph.ir.program import Result, operations_of
 from linegraph.model.terminal_graphs import terminals_of
 from linegraph.notation.plain import Plain
-from linegraph.notation.tree import ZERO, Listed, Math, Name, total
-from linegraph.report.document import Block, Formulas, Row, said
+from linegraph.notation.tree import ZERO, Components, Math, Name, total
+from linegraph.report.document import Block, EquationRow, Formulas, said
 from linegraph.report.laws import vector
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def motion(subject: Subject) -> tuple[Block, ...]:
             before = [(False, vector("ω", near))]
         paths[far] = [*before, (not step.forward, vector("ω", step.edge.name))]
     for body in subject.model.bodies:
-        rows.append(Row(vector("ω", body), total(paths.get(body, []), ordered=False)))
+        rows.append(EquationRow(vector("ω", body), total(paths.get(body, []), ordered=False)))
     text = (
         "By the circuit equations of rotation the angular velocity of a body is the sum of those of the "
         "joints on its way to ground:"
@@ -77,7 +77,7 @@ def centers(subject: Subject) -> list[Block]:
     return [said(text), Formulas(tuple(short for row in found for short in _by_components(row)))]
 
 
-def _rows(subject: Subject) -> list[Row]:
+def _rows(subject: Subject) -> list[EquationRow]:
     """The place and the velocity of every mass centre; none where they have too many terms."""
     from linegraph.programs.workspace import Functions
 
@@ -93,8 +93,8 @@ def _rows(subject: Subject) -> list[Row]:
     rows = []
     for k, body in enumerate(frames):
         place, speed = closed[6 * k : 6 * k + 3], closed[6 * k + 3 : 6 * k + 6]
-        rows.append(Row(vector("r", f"{body}.{MASS_CENTER}"), _vector(place)))
-        rows.append(Row(vector("v", f"{body}/inertia"), _vector(speed)))
+        rows.append(EquationRow(vector("r", f"{body}.{MASS_CENTER}"), _vector(place)))
+        rows.append(EquationRow(vector("v", f"{body}/inertia"), _vector(speed)))
     return rows
 
 
@@ -109,17 +109,17 @@ def _closed(subject: Subject, entries: list[Any]) -> list[Math]:
 
 
 def _vector(entries: list[Math]) -> Math:
-    return ZERO if all(entry == ZERO for entry in entries) else Listed(tuple(entries))
+    return ZERO if all(entry == ZERO for entry in entries) else Components(tuple(entries))
 
 
-def _by_components(row: Row) -> list[Row]:
+def _by_components(row: EquationRow) -> list[EquationRow]:
     """A vector as one where it fits, else those of its components that are not zero."""
-    if not isinstance(row.right, Listed) or len(Plain()(row.right)) <= WIDEST:
+    if not isinstance(row.right, Components) or len(Plain()(row.right)) <= WIDEST:
         return [row]
     assert isinstance(row.left, Name)
     left = row.left
     return [
-        Row(Name(left.letter, (*left.subs, axis)), entry)
+        EquationRow(Name(left.letter, (*left.subs, axis)), entry)
         for axis, entry in zip("xyz", row.right.entries, strict=True)
         if entry != ZERO
     ]

@@ -8,10 +8,10 @@ from linegraph.ir.dag import ADD, DIV, MUL, NEG, SUB, SYMBOL, Node
 from linegraph.notation.expressions import RENAMED, number
 from linegraph.notation.tree import (
     ONE,
-    Call,
+    Fraction,
+    FunctionCall,
     Math,
     Power,
-    Quotient,
     Root,
     Sum,
     negated,
@@ -65,7 +65,7 @@ class Nodes:
         if op == "sqrt":
             return Root(self(a))
         arguments = [a] if b is None else [a, b]
-        return Call(RENAMED.get(op, op), tuple(self(x) for x in arguments))
+        return FunctionCall(RENAMED.get(op, op), tuple(self(x) for x in arguments))
 
     def _sum(self, node: Node) -> Math:
         a, b = node.a, node.b
@@ -89,7 +89,7 @@ class Nodes:
     @staticmethod
     def _quotient(above: Math, below: Math) -> Math:
         (negative, above), (other, below) = _unsigned(above), _unsigned(below)
-        found = above if below == ONE else Quotient(above, below)
+        found = above if below == ONE else Fraction(above, below)
         return negated(found) if negative != other else found
 
 

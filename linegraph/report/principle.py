@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from linegraph.components.domains import ROTATION, TRANSLATION
 from linegraph.components.forces import Load
 from linegraph.notation.tree import TRANSPOSED, ZERO, Math, Name, Over, Power, Product, Sum, total
-from linegraph.report.document import Block, Code, Formulas, Inline, Row, Section, said
+from linegraph.report.document import Block, Code, EquationRow, Formulas, Inline, Section, said
 from linegraph.report.graphs import called
 from linegraph.report.laws import (
     crossed,
@@ -52,8 +52,8 @@ def _arms(subject: Subject) -> tuple[Block, ...]:
     moment = Name("T", bold=True)
     head = Name("r", ("head",), bold=True)
     rows = (
-        Row(Name("v", ("arm",), bold=True), crossed(spin, arm)),
-        Row(moment, total([(False, torque), (False, crossed(head, force))], ordered=False)),
+        EquationRow(Name("v", ("arm",), bold=True), crossed(spin, arm)),
+        EquationRow(moment, total([(False, torque), (False, crossed(head, force))], ordered=False)),
     )
     text: tuple[Inline, ...] = (
         "A rigid arm ", arm, " turns with its body, so a rotation appears in translation as a velocity "
@@ -65,7 +65,9 @@ def _arms(subject: Subject) -> tuple[Block, ...]:
     blocks: list[Block] = [said(*text), Formulas(rows)]
     if arms and len(arms) <= MOST_EDGES:
         of = [
-            Row(vector("v", name), crossed(vector("ω", name.partition("/")[0]), vector("ρ", name)))
+            EquationRow(
+                vector("v", name), crossed(vector("ω", name.partition("/")[0]), vector("ρ", name))
+            )
             for name in arms
             if not name.startswith("ground/")
         ]
@@ -92,7 +94,7 @@ def orthogonality(subject: Subject) -> Section:
             "Add the sums. With the connecting equations the arms and the moments of forces leave each other "
             "out, and with the terminal equations of the joints their reactions do no work. What remains are "
             "inertia edges, efforts, elements and what closes loops:"))  # fmt: skip
-        blocks.append(Formulas((Row(left, ZERO),)))
+        blocks.append(Formulas((EquationRow(left, ZERO),)))
     blocks.append(said(
         "The variations of all across variables follow from those of the velocities, which are independent; "
         "so each coefficient is zero, and these are the equations of motion ",
@@ -100,7 +102,7 @@ def orthogonality(subject: Subject) -> Section:
     return Section("The principle of orthogonality", tuple(blocks))
 
 
-def _sums(subject: Subject) -> list[Row]:
+def _sums(subject: Subject) -> list[EquationRow]:
     rows = []
     graph = subject.derivation.graph
     for projection in graph.projections:
@@ -109,12 +111,12 @@ def _sums(subject: Subject) -> list[Row]:
         edges = [edge.name for edge in projection.edges]
         if len(edges) > MOST_EDGES:
             pair: Math = _pair(subject, domain, "e", spatial)
-            rows.append(Row(Over("Σ", f"e in {called(domain)}", pair), ZERO))
+            rows.append(EquationRow(Over("Σ", f"e in {called(domain)}", pair), ZERO))
             continue
         terms: list[tuple[bool, Math]] = [
             (False, _pair(subject, domain, e, spatial)) for e in edges
         ]
-        rows.append(Row(total(terms, ordered=False), ZERO))
+        rows.append(EquationRow(total(terms, ordered=False), ZERO))
     return rows
 
 

@@ -12,7 +12,7 @@ from linegraph.components.parameters import resolver
 from linegraph.notation.expressions import number
 from linegraph.notation.names import shaped
 from linegraph.notation.notation import Notation
-from linegraph.notation.tree import ZERO, Listed, Math, Name, total
+from linegraph.notation.tree import ZERO, Components, Math, Name, total
 from linegraph.symbolic.simplification.numbers import plain
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ class Subject:
     def vector(self, values: Iterable[Any]) -> Math:
         """Components in brackets; 0 where all are."""
         entries = tuple(self.value(x) for x in values)
-        return ZERO if all(e == ZERO for e in entries) else Listed(entries)
+        return ZERO if all(e == ZERO for e in entries) else Components(entries)
 
     # -- symbols of the state
 

@@ -11,12 +11,12 @@ from linegraph.notation.tree import (
     Name,
     Power,
     Product,
-    Relation,
     Sum,
+    TwoSides,
     product,
     total,
 )
-from linegraph.report.document import Block, Code, Inline, Section, Table, Text, said
+from linegraph.report.document import Block, CellTable, Code, Inline, Section, Text, said
 
 if TYPE_CHECKING:
     from linegraph.components.joints import Joint
@@ -30,14 +30,14 @@ def letter(text: str, *, dots: int = 0, bold: bool = True) -> Name:
     return Name(text, dots=dots, bold=bold)
 
 
-def motion_equation(subject: Subject) -> Relation:
+def motion_equation(subject: Subject) -> TwoSides:
     """``M v̇ + h = Q``, with multipliers where there are any."""
     left = Sum(((False, Product((letter("M"), letter("v", dots=1)))), (False, letter("h"))))
     right: Any = letter("Q")
     if subject.tree.closed:
         pushed = Product((Power(letter("J"), TRANSPOSED), letter("λ")))
         right = Sum(((False, right), (False, pushed)))
-    return Relation(left, "=", right)
+    return TwoSides(left, "=", right)
 
 
 def conventions(subject: Subject, rounded: bool) -> Section:
@@ -45,10 +45,10 @@ def conventions(subject: Subject, rounded: bool) -> Section:
     mechanics, networks = bool(subject.model.bodies), subject.network is not None
     text: list[Inline] = ["The equations of motion are ", motion_equation(subject)]
     if subject.tree.closed:
-        gamma = Relation(Product((letter("J"), letter("v", dots=1))), "=", letter("γ"))
+        gamma = TwoSides(Product((letter("J"), letter("v", dots=1))), "=", letter("γ"))
         text += [" with the constraints ", gamma]
     if subject.tree.positions:
-        rates = Relation(letter("q", dots=1), "=", Product((letter("N"), letter("v"))))
+        rates = TwoSides(letter("q", dots=1), "=", Product((letter("N"), letter("v"))))
         text += [", and ", rates]
     text += [
         ". A dot, in plain text a prime, is a derivative by time; vectors and matrices are bold; "
@@ -118,7 +118,7 @@ def _counts(subject: Subject) -> Block:
         if gravity == ZERO:
             text.append(" There is no gravity.")
         else:
-            text += [" Gravity is ", Relation(letter("g"), "=", gravity), " in the axes of ground."]
+            text += [" Gravity is ", TwoSides(letter("g"), "=", gravity), " in the axes of ground."]
     return said(*text)
 
 
@@ -145,7 +145,7 @@ def _bodies(subject: Subject) -> tuple[Block, ...] | None:
             frames += [Code(name), " at ", subject.vector(placement.at)]
         place: Text = (center,) if body.first is None else ("first moment ", center)
         rows.append(((Code(body.name),), (subject.value(body.mass),), place, tuple(frames)))
-    table = Table(("body", "mass / kg", "mass centre / m", "frames / m"), tuple(rows))
+    table = CellTable(("body", "mass / kg", "mass centre / m", "frames / m"), tuple(rows))
     return (table, *_inertias(subject))
 
 
@@ -166,7 +166,7 @@ def _inertias(subject: Subject) -> list[Block]:
         about += "; bodies without inertia are left out"
     head = ("body", *(f"J {AXES[k]}" for k in used))
     rows = [((Code(b.name),), *((subject.value(b.inertia[k]),) for k in used)) for b in bodies]
-    return [said(f"{about}:"), Table(head, tuple(rows))]
+    return [said(f"{about}:"), CellTable(head, tuple(rows))]
 
 
 def unit_of(text: str) -> str:
@@ -191,7 +191,7 @@ def _joints(subject: Subject) -> tuple[Block, ...] | None:
         rows.append(
             ((Code(joint.name),), (_kind(joint.kind),), between, axis, _remark(subject, joint))
         )
-    return (Table(("joint", "type", "tail → head", "axis", "remark"), tuple(rows)),)
+    return (CellTable(("joint", "type", "tail → head", "axis", "remark"), tuple(rows)),)
 
 
 def _remark(subject: Subject, joint: Joint) -> Text:
@@ -201,7 +201,7 @@ def _remark(subject: Subject, joint: Joint) -> Text:
             master = subject.look.name(coupling.master)
             ratio, offset = subject.value(coupling.ratio), subject.value(coupling.offset)
             follows = total([(False, product([ratio, master])), (False, offset)], ordered=False)
-            text += ["follows: ", Relation(subject.look.name(joint.name), "=", follows)]
+            text += ["follows: ", TwoSides(subject.look.name(joint.name), "=", follows)]
     if joint.drive is not None:
         given = joint.drive if isinstance(joint.drive, (tuple, list)) else (joint.drive,)
         if BY_INPUT in given:
@@ -209,7 +209,7 @@ def _remark(subject: Subject, joint: Joint) -> Text:
         else:
             for quantity, x in zip(joint.positions(), given, strict=False):
                 text += [", "] if text else ["prescribed: "]
-                text.append(Relation(subject.look.name(quantity.name), "=", subject.value(x)))
+                text.append(TwoSides(subject.look.name(quantity.name), "=", subject.value(x)))
     if joint.name in subject.derivation.formulation.chords:
         text.append("closes a loop" if not text else "; closes a loop")
     return tuple(text)
@@ -225,7 +225,7 @@ def _constraints(subject: Subject) -> tuple[Block, ...] | None:
         for c in subject.model.constraints
     ]
     rows += [((Code(r.name),), ("relation",), ("between rates",)) for r in subject.model.relations]
-    return (Table(("constraint", "type", "tail → head"), tuple(rows)),) if rows else None
+    return (CellTable(("constraint", "type", "tail → head"), tuple(rows)),) if rows else None
 
 
 def _elements(subject: Subject) -> tuple[Block, ...] | None:
@@ -240,7 +240,7 @@ def _elements(subject: Subject) -> tuple[Block, ...] | None:
         else:
             place = ("on ", Code(getattr(element, "at", "")))
         rows.append(((Code(element.name),), (_kind(element.kind),), place))
-    return (Table(("element", "type", "place"), tuple(rows)),) if rows else None
+    return (CellTable(("element", "type", "place"), tuple(rows)),) if rows else None
 
 
 def _components(subject: Subject) -> tuple[Block, ...] | None:
@@ -256,7 +256,7 @@ def _components(subject: Subject) -> tuple[Block, ...] | None:
             else:
                 ports += [Code(ends[0]), " → ", Code(ends[1])]
         rows.append(((Code(component.name),), (_kind(component.kind),), tuple(ports)))
-    return (Table(("component", "type", "edges: tail → head"), tuple(rows)),) if rows else None
+    return (CellTable(("component", "type", "edges: tail → head"), tuple(rows)),) if rows else None
 
 
 def _parameters(subject: Subject) -> tuple[Block, ...] | None:
@@ -274,7 +274,7 @@ def _parameters(subject: Subject) -> tuple[Block, ...] | None:
             )
         )
     head = ("parameter", "symbol", "value", "unit", "meaning")
-    return (Table(head, tuple(rows)),) if rows else None
+    return (CellTable(head, tuple(rows)),) if rows else None
 
 
 def _state(subject: Subject) -> tuple[Block, ...]:
@@ -289,7 +289,9 @@ def _state(subject: Subject) -> tuple[Block, ...]:
             symbol = subject.look.name(name)
             of = Name(letter_, (str(k),))
             rows.append(((of,), (symbol,), (unit_of(quantity.unit),), (quantity.about,)))
-    return (Table(("", "symbol", "unit", "meaning"), tuple(rows)),) if rows else (said("None."),)
+    return (
+        (CellTable(("", "symbol", "unit", "meaning"), tuple(rows)),) if rows else (said("None."),)
+    )
 
 
 __all__ = ["conventions", "count", "described", "letter", "listed", "motion_equation"]

@@ -8,16 +8,16 @@ from linegraph.notation.plain import Plain
 from linegraph.notation.writing import visible
 from linegraph.report.document import (
     Block,
+    CellTable,
     Code,
     Document,
+    EquationRow,
     Formulas,
-    Listing,
+    IntermediateList,
     Matrix,
     Paragraph,
     Picture,
-    Row,
     Section,
-    Table,
     Text,
 )
 from linegraph.report.lines import broken
@@ -60,13 +60,13 @@ def _block(block: Block) -> list[str]:
     match block:
         case Paragraph(text):
             return _wrapped(said(text))
-        case Table(head, rows):
+        case CellTable(head, rows):
             return _table([head, *([said(cell) for cell in row] for row in rows)])
         case Matrix():
             return matrix_lines(block.matrix, WIDTH)
         case Formulas(rows):
             return [line for row in rows for line in _row(row)]
-        case Listing(groups):
+        case IntermediateList(groups):
             lines: list[str] = []
             for group in groups:
                 lines += [
@@ -100,7 +100,7 @@ def visible_words(text: str) -> str:
     return f"{before}{inner}{after}"
 
 
-def _row(row: Row) -> list[str]:
+def _row(row: EquationRow) -> list[str]:
     left = f"    {Plain()(row.left)} {row.sign} "
     indent = min(len(left), 24)
     first, *others = broken(row.right, Plain(), WIDTH - indent, max(0, len(left) - indent))

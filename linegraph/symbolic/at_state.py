@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy
 
-from linegraph.algebra.differentiation import Calculus, Sizes
+from linegraph.algebra.differentiation import Calculus, TermSizes
 from linegraph.dynamics.symbol_names import MULTIPLIERS
 from linegraph.errors import ModelError
 from linegraph.symbolic.letters import Letters, Numbers
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from linegraph.algebra.differentiation import Symbol
     from linegraph.algebra.scalar import Scalar
     from linegraph.symbolic.simplification import Simplifier
-    from linegraph.symbolic.small_motions import Motion, Rows, Slopes
+    from linegraph.symbolic.small_motions import EquationsOfMotion, Rows, Slopes
 
 Expr = Any
 
@@ -50,7 +50,7 @@ class AtState:
 
     def __init__(
         self,
-        motion: Motion,
+        motion: EquationsOfMotion,
         simplifier: Simplifier,
         names: Mapping[str, Sequence[str]],
         values: Mapping[Symbol, Expr],
@@ -65,7 +65,7 @@ class AtState:
         self._letters = Letters(simplifier, values)
         self._checked(self._evaluate)
         self._numbers = [Numbers(point, values, ring) for point in simplifier.points]
-        self._sizes = Sizes(Calculus(motion.dag))
+        self._sizes = TermSizes(Calculus(motion.dag))
         self._freedoms = Freedoms([], [], list(range(motion.size)), [])
         if motion.jacobian:
             self._freedoms = self._found_freedoms(independent, rank)

@@ -28,7 +28,7 @@ from linegraph.paper.star_form import PrintedMatrices, printed_matrices
 from linegraph.symbolic.coriolis import coriolis_matrix, gradient_along
 from linegraph.symbolic.equation_list import Equations
 from linegraph.symbolic.simplification import BUDGET, Simplifier
-from linegraph.symbolic.small_motions import Motion
+from linegraph.symbolic.small_motions import EquationsOfMotion
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from linegraph.numeric.derived import Derived
 
 
-class Symbolic:
+class ClosedForms:
     """A derivation's equations as sympy objects, in closed form.
 
     Coordinates are written as the joints' names; velocities as ``name_dot``, or by their own names
@@ -334,10 +334,10 @@ class Symbolic:
         return dict(zip((output.name for output in self._model.outputs), found, strict=True))
 
     @cached_property
-    def motion(self) -> Motion:
+    def motion(self) -> EquationsOfMotion:
         """The equations over the DAG, as they are linearised."""
         (q, v), exchange = self._state, self._exchange
-        return Motion.of(
+        return EquationsOfMotion.of(
             self.tree,
             self.dag,
             self._chords,

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from linegraph.symbolic.simplification import Simplifier
     from linegraph.symbolic.simplification.numbers import Terms
     from linegraph.symbolic.simplification.polynomial import Poly, Ring
-    from linegraph.symbolic.simplification.proof import Point
+    from linegraph.symbolic.simplification.proof import SamplePoint
     from linegraph.symbolic.simplification.quotients import Quotient
 
 Rows = list[list[Any]]
@@ -116,7 +116,7 @@ class Numbers:
         ring: knows whether some numbers are floats.
     """
 
-    def __init__(self, point: Point, values: Mapping[Symbol, Expr], ring: Ring) -> None:
+    def __init__(self, point: SamplePoint, values: Mapping[Symbol, Expr], ring: Ring) -> None:
         """Nothing is calculated yet."""
         self._known: dict[Symbol, Any] = {s: point.expression(e) for s, e in values.items()}
         self._point = point

@@ -53,7 +53,7 @@ class Calculator(Protocol):
 
 
 @dataclass(frozen=True)
-class Motion:
+class EquationsOfMotion:
     """The equations of motion over a DAG, v̇ as symbols a, multipliers as lam, unknowns of loops as loop.
 
     Attributes:
@@ -85,7 +85,7 @@ class Motion:
     @classmethod
     def of(
         cls, tree: KinematicTree, dag: Dag, chords: Chords, v: Sequence[Scalar], **others: Any
-    ) -> Motion:
+    ) -> EquationsOfMotion:
         """A motion with the constraints of chords, if there are any."""
         given: tuple[Any, ...] = ([], [], [], [])
         if tree.closed:
@@ -143,7 +143,7 @@ class Slopes:
     adjoint: Rows
 
 
-def slopes(motion: Motion, *, moving: bool) -> Slopes:
+def slopes(motion: EquationsOfMotion, *, moving: bool) -> Slopes:
     """Differentiate a motion.
 
     Args:
@@ -193,7 +193,7 @@ def slopes(motion: Motion, *, moving: bool) -> Slopes:
 
 
 def accelerations(
-    motion: Motion, at: Calculator, freedoms: Freedoms
+    motion: EquationsOfMotion, at: Calculator, freedoms: Freedoms
 ) -> tuple[list[Any], list[Any]]:
     """v̇ and λ at a state; λ of redundant constraints is zero."""
     kept = [i for i, _ in freedoms.rows]
@@ -206,7 +206,9 @@ def accelerations(
     return found[: motion.size], lam
 
 
-def linear(motion: Motion, slopes: Slopes, at: Calculator, freedoms: Freedoms) -> tuple[Rows, Rows]:
+def linear(
+    motion: EquationsOfMotion, slopes: Slopes, at: Calculator, freedoms: Freedoms
+) -> tuple[Rows, Rows]:
     """The rows of (A B) and of (C D).
 
     Args:
@@ -246,7 +248,7 @@ def linear(motion: Motion, slopes: Slopes, at: Calculator, freedoms: Freedoms) -
 
 
 def _allowed(
-    motion: Motion, slopes: Slopes, at: Calculator, freedoms: Freedoms
+    motion: EquationsOfMotion, slopes: Slopes, at: Calculator, freedoms: Freedoms
 ) -> tuple[Rows, Rows]:
     """(d, dv, du) by (ds, dw, du), and the rates of s by the same; nothing without constraints."""
     n, mechanical = motion.size, motion.tree.layout.mechanical
@@ -283,7 +285,7 @@ def _allowed(
     return [*changes, *velocities, *inputs], going
 
 
-def _saddle(motion: Motion, at: Calculator, kept: Sequence[int]) -> Rows:
+def _saddle(motion: EquationsOfMotion, at: Calculator, kept: Sequence[int]) -> Rows:
     """M and the independent rows of J in one matrix: (M -J^T; J 0)."""
     mass, jacobian = _at(at, motion.mass), [[at(x) for x in motion.jacobian[i]] for i in kept]
     zero = at(0)

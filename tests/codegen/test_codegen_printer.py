@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from codegen.printer import Body, Notation, number, print_program
+from codegen.printer import PrintedBody, Syntax, number, print_program
 from linegraph.ir.dag import Dag, Node, Operand
 from linegraph.ir.functions import ARITY
 from linegraph.ir.program import Argument, Check, Program, Result, assemble
 
-PLAIN = Notation(
+PLAIN = Syntax(
     before="",
     after="",
     member="p.",
@@ -27,7 +27,7 @@ def assembled(*entries: Operand, checks: tuple[Check, ...] = ()) -> Program:
     return assemble("f", "", ARGUMENTS, (Result("y", (len(entries),), entries, ""),), checks)
 
 
-def printed(*entries: Operand, checks: tuple[Check, ...] = ()) -> Body:
+def printed(*entries: Operand, checks: tuple[Check, ...] = ()) -> PrintedBody:
     return print_program(assembled(*entries, checks=checks), PLAIN)
 
 

@@ -147,7 +147,7 @@ def test_records_say_what_the_text_does(
     of: str, options: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Every variable and every call in the text of a function is in its record, and little else."""
-    records: dict[str, frames.Frame] = {}
+    records: dict[str, frames.StackFrame] = {}
     bounds = stack.bounds
     monkeypatch.setattr(
         stack, "bounds", lambda known, real: (records.update(known), bounds(known, real))[1]
@@ -179,8 +179,8 @@ def test_the_text_is_read_as_it_is_written() -> None:
 
 
 def test_bounds_add_up_along_the_deepest_calls() -> None:
-    def frame(*calls: str, doubles: int) -> frames.Frame:
-        return frames.Frame(doubles=doubles, statements=0, parameters=1, calls={*calls, "sin"})
+    def frame(*calls: str, doubles: int) -> frames.StackFrame:
+        return frames.StackFrame(doubles=doubles, statements=0, parameters=1, calls={*calls, "sin"})
 
     known = {
         "top": frame("left", "right", doubles=4),

@@ -17,7 +17,7 @@ from linegraph.notation.mathml import MathMl
 from linegraph.notation.names import shaped
 from linegraph.notation.notation import Notation
 from linegraph.notation.plain import Plain
-from linegraph.notation.tree import Number, Sum
+from linegraph.notation.tree import Numeral, Sum
 from linegraph.notation.writing import pieces, visible
 
 g, l, m, J_axial, theta, theta_dot, hinge, hinge_dot = sympy.symbols(  # noqa: E741
@@ -199,9 +199,9 @@ def test_factored_forms_are_kept() -> None:
 
 
 def test_numbers() -> None:
-    assert number(1 / 3) == Number("0.333333", True)
-    assert number(0.25) == Number("0.25")
-    assert number(-2) == Sum(((True, Number("2")),))
+    assert number(1 / 3) == Numeral("0.333333", True)
+    assert number(0.25) == Numeral("0.25")
+    assert number(-2) == Sum(((True, Numeral("2")),))
     assert Plain()(number(3e-5)) == "3·10⁻⁵"
     assert Latex()(number(1e12)) == "10^{12}"
     assert Latex()(number(2.5e-8)) == r"2.5 \cdot 10^{-8}"

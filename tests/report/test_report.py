@@ -28,7 +28,15 @@ from linegraph.notation.tree import Grid, Name, Sum
 from linegraph.readers import modelfile, urdf
 from linegraph.report import FORMATS, format_of, html, latex, markdown, report, text
 from linegraph.report.contents import document
-from linegraph.report.document import Document, Formulas, Listing, Matrix, Row, Section, formulas
+from linegraph.report.document import (
+    Document,
+    EquationRow,
+    Formulas,
+    IntermediateList,
+    Matrix,
+    Section,
+    formulas,
+)
 from linegraph.report.graphs import MOST_WRITTEN
 from linegraph.report.intermediates import ENTRIES, symbols_of
 from linegraph.report.subject import Subject
@@ -205,7 +213,7 @@ def equations_in(section: Section) -> dict[str, Any]:
     """Every equation of a section by the plain text of its left side; matrices entry by entry."""
     found: dict[str, str] = {}
     for block in blocks(section.blocks):
-        rows: tuple[Row, ...] = block.rows if isinstance(block, Formulas) else ()
+        rows: tuple[EquationRow, ...] = block.rows if isinstance(block, Formulas) else ()
         for row in rows:
             left, right = Plain()(row.left), Plain()(row.right)
             if not isinstance(row.right, Grid):
@@ -222,7 +230,7 @@ def walked(section: Section, values: dict[str, float]) -> dict[str, float]:
     """The named intermediates of a section, computed in the order in which they are listed."""
     known = dict(values)
     for block in blocks(section.blocks):
-        for group in block.groups if isinstance(block, Listing) else ():
+        for group in block.groups if isinstance(block, IntermediateList) else ():
             for row in group.rows:
                 name = Plain()(row.left)
                 assert name not in values

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
     from linegraph import Derivation
     from linegraph.numeric.reference import Numeric
-    from linegraph.symbolic.closed_forms import Symbolic
+    from linegraph.symbolic.closed_forms import ClosedForms
 
 Array = Any
 Expr = Any
@@ -191,7 +191,7 @@ def agree(derivation: Derivation, level: str, seed: int, *, reactions: bool = Tr
     forms_agree(derivation, at_level(derivation, level), seed, reactions=reactions)
 
 
-def forms_agree(derivation: Derivation, found: Symbolic, seed: int, *, reactions: bool) -> None:
+def forms_agree(derivation: Derivation, found: ClosedForms, seed: int, *, reactions: bool) -> None:
     """All that was asked for, at two states."""
     for k in range(2):
         state = state_of(derivation, 2 * seed + k)
@@ -222,12 +222,12 @@ def readable(seed: int, symbolic: bool, elements: bool = True, drives: bool = Tr
 
 
 @cache
-def form(seed: int, level: str) -> Symbolic:
+def form(seed: int, level: str) -> ClosedForms:
     """What a readable system has at a level."""
     return at_level(readable(seed, turns(seed)), level)
 
 
-def at_level(derivation: Derivation, level: str) -> Symbolic:
+def at_level(derivation: Derivation, level: str) -> ClosedForms:
     return derivation.symbolic if level == "full" else derivation.closed_form(level)
 
 

@@ -5,7 +5,7 @@ from linegraph.components.constraints.base import (
     Instant,
     Pose,
     Prescribed,
-    Row,
+    ReactionRow,
     aligned,
 )
 from linegraph.components.constraints.blade import Blade
@@ -25,8 +25,8 @@ __all__ = [
     "Instant",
     "Pose",
     "Prescribed",
+    "ReactionRow",
     "Rod",
     "Rolling",
-    "Row",
     "aligned",
 ]

@@ -59,7 +59,7 @@ class Instant(NamedTuple):
     drive: Sequence[Prescribed | None]
 
 
-class Row(NamedTuple):
+class ReactionRow(NamedTuple):
     """One reaction direction between tail and head, in ground axes.
 
     With u the velocity of the head's origin as seen from the tail and w the relative angular velocity, the
@@ -119,7 +119,7 @@ class Constraint:
         """For each row its multiplier and whether it has an equation of position."""
         raise NotImplementedError
 
-    def rows(self, at: Instant) -> tuple[Row, ...]:
+    def rows(self, at: Instant) -> tuple[ReactionRow, ...]:
         """The rows at a state, in the order of `equations`."""
         raise NotImplementedError
 

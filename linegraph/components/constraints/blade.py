@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linegraph.components.constraints.base import Constraint, Row
+from linegraph.components.constraints.base import Constraint, ReactionRow
 from linegraph.ir.program import Quantity
 from linegraph.spatial.vector import ZERO, Vector, times
 
@@ -32,8 +32,8 @@ class Blade(Constraint):
         """The force across it."""
         return ((Quantity(f"{self.name}_across", "N", f"force across blade {self.name}"), False),)
 
-    def rows(self, at: Instant) -> tuple[Row, ...]:
+    def rows(self, at: Instant) -> tuple[ReactionRow, ...]:
         """A force along the direction."""
         x, y, z = self.axis
         across = times(at.head.rotation, (at.resolve(x), at.resolve(y), at.resolve(z)))
-        return (Row(None, across, ZERO),)
+        return (ReactionRow(None, across, ZERO),)

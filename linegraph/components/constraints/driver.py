@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from linegraph.components.constraints.base import Constraint, Row
+from linegraph.components.constraints.base import Constraint, ReactionRow
 from linegraph.ir.program import Quantity
 from linegraph.spatial.rotation import IDENTITY_MATRIX
 from linegraph.spatial.vector import ZERO, dot, subtract, times
@@ -57,12 +57,12 @@ class Driver(Constraint):
             if value is not None
         )
 
-    def rows(self, at: Instant) -> tuple[Row, ...]:
+    def rows(self, at: Instant) -> tuple[ReactionRow, ...]:
         """Along the tail's axes."""
         line = subtract(at.head.origin, at.tail.origin)
         found = []
         for axis, given in zip(IDENTITY_MATRIX, at.drive, strict=True):
             if given is not None:
                 direction = times(at.tail.rotation, axis)
-                found.append(Row(dot(direction, line) - given.x, direction, ZERO, given.dx))
+                found.append(ReactionRow(dot(direction, line) - given.x, direction, ZERO, given.dx))
         return tuple(found)

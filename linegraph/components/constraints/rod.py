@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from linegraph.components.constraints.base import Constraint, Row
+from linegraph.components.constraints.base import Constraint, ReactionRow
 from linegraph.ir.program import Quantity
 from linegraph.spatial.vector import ZERO, dot, scale, subtract
 
@@ -42,10 +42,10 @@ class Rod(Constraint):
         about = f"force of rod {self.name} on its head, along the line from tail to head"
         return ((Quantity(f"{self.name}_force", "N", about), True),)
 
-    def rows(self, at: Instant) -> tuple[Row, ...]:
+    def rows(self, at: Instant) -> tuple[ReactionRow, ...]:
         """Along the line that joins the points."""
         line = subtract(at.head.origin, at.tail.origin)
         distance = at.algebra.sqrt(dot(line, line))
         (length,) = at.drive
         x, dx = length or (0, 0)
-        return (Row(distance - x, scale(1 / distance, line), ZERO, dx),)
+        return (ReactionRow(distance - x, scale(1 / distance, line), ZERO, dx),)

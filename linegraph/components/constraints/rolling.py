@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from linegraph.components.constraints.base import Constraint, Pose, Row
+from linegraph.components.constraints.base import Constraint, Pose, ReactionRow
 from linegraph.errors import ModelError
 from linegraph.ir.program import Quantity
 from linegraph.spatial.vector import Vector, add, cross, dot, negate, scale, subtract, times
@@ -72,7 +72,7 @@ class Rolling(Constraint):
             )
         )
 
-    def rows(self, at: Instant) -> tuple[Row, ...]:
+    def rows(self, at: Instant) -> tuple[ReactionRow, ...]:
         """Forces at the point of contact."""
         normal, along, across = _columns(at.tail)
         radius, crown = at.resolve(self.radius), at.resolve(self.crown)
@@ -92,9 +92,9 @@ class Rolling(Constraint):
             across = cross(normal, along)
         touching = dot(normal, line) - height
         return (
-            Row(touching, normal, cross(contact, normal)),
-            Row(None, along, cross(contact, along)),
-            Row(None, across, cross(contact, across)),
+            ReactionRow(touching, normal, cross(contact, normal)),
+            ReactionRow(None, along, cross(contact, along)),
+            ReactionRow(None, across, cross(contact, across)),
         )
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Equation:
+class LawEquation:
     """An equation as it is written: ``left = right``."""
 
     left: Formula
@@ -27,7 +27,7 @@ class Equation:
         return Formula("-", (self.left, self.right))
 
 
-def equation(text: str) -> Equation:
+def equation(text: str) -> LawEquation:
     """Read an equation.
 
     Raises:
@@ -40,7 +40,7 @@ def equation(text: str) -> Equation:
     left, sign, right = text.partition("=")
     if not sign or "=" in right:
         raise ModelError("", f"an equation such as y = f(x) is wanted, not {text[:60]!a}")
-    return Equation(parse(left), parse(right))
+    return LawEquation(parse(left), parse(right))
 
 
 @dataclass(frozen=True)
@@ -99,8 +99,8 @@ class AnyElement(Component):
             raise ModelError(f'{self.kind} "{self.name}"', f"law: {error.problem}") from None
 
     @property
-    def _law(self) -> Equation:
-        return self.law if isinstance(self.law, Equation) else equation(str(self.law))
+    def _law(self) -> LawEquation:
+        return self.law if isinstance(self.law, LawEquation) else equation(str(self.law))
 
     def _own(self, at: Terminals) -> dict[str, Scalar]:
         return {"x": at.X[0], "y": at.Y[0], **at.states}

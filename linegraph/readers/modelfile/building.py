@@ -24,7 +24,7 @@ from linegraph.readers.modelfile.bounded import CHECK
 from linegraph.readers.modelfile.expressions import Names
 from linegraph.readers.modelfile.kinds import WRONG, said
 from linegraph.readers.modelfile.names import name_problem
-from linegraph.readers.modelfile.report import Report, Spot, shown
+from linegraph.readers.modelfile.report import ModelReport, Spot, shown
 from linegraph.readers.modelfile.symbols import (
     read_inputs,
     read_outputs,
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
     from linegraph.components.joints import Joint
     from linegraph.model.body_handle import BodyHandle
-    from linegraph.readers.modelfile.document import Document
+    from linegraph.readers.modelfile.document import ModelText
 
 SHARED = {*JOINTS, *ELEMENTS, "load", *CONSTRAINTS, "relation", *COMPONENTS}
 """Types whose names must differ from each other: each names an edge."""
@@ -77,7 +77,7 @@ MEANT = {
 """What those mean who write a word that the language says otherwise."""
 
 
-def build(document: Document, name: str, report: Report, snap: float) -> Model:
+def build(document: ModelText, name: str, report: ModelReport, snap: float) -> Model:
     """The model of a file, as far as it is right.
 
     Args:
@@ -92,7 +92,7 @@ def build(document: Document, name: str, report: Report, snap: float) -> Model:
 class _Builder:
     """Reads one file's tables in the order in which they need each other."""
 
-    def __init__(self, document: Document, report: Report, model: Model) -> None:
+    def __init__(self, document: ModelText, report: ModelReport, model: Model) -> None:
         self._data = document.data
         self._order = {path: i for i, path in enumerate(document.lines)}
         self._report = report

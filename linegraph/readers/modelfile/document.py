@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.errors import SourceError
 from linegraph.readers.modelfile import json_lines, toml_lines
-from linegraph.readers.modelfile.places import Limit, Places
-from linegraph.readers.modelfile.report import Report, shown
+from linegraph.readers.modelfile.places import Limit, Lines
+from linegraph.readers.modelfile.report import ModelReport, shown
 from linegraph.readers.modelfile.tables import FLAT
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ _UTF8 = "; save the file as UTF-8"
 _AT = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 
-class Document(NamedTuple):
+class ModelText(NamedTuple):
     """What a file says.
 
     Attributes:
@@ -56,7 +56,7 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
         raise SourceError(source, None, "", f"cannot be read: {error}") from None
 
 
-def parse_document(data: bytes, source: str) -> Document:
+def parse_document(data: bytes, source: str) -> ModelText:
     """The tables and places of a TOML or JSON text.
 
     Raises:
@@ -70,7 +70,7 @@ def parse_document(data: bytes, source: str) -> Document:
     except Limit as limit:
         raise SourceError(source, limit.line, "", limit.problem) from None
     tables = (_json if as_json else _toml)(text, source, places)
-    return Document(tables, places.lines)
+    return ModelText(tables, places.lines)
 
 
 def _require_regular(status: os.stat_result, source: str) -> None:
@@ -102,7 +102,7 @@ def _decoded(data: bytes, source: str) -> str:
     return text.replace("\r\n", "\n")
 
 
-def _toml(text: str, source: str, places: Places) -> dict[str, Any]:
+def _toml(text: str, source: str, places: Lines) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -117,11 +117,11 @@ def _toml(text: str, source: str, places: Places) -> dict[str, Any]:
         raise SourceError(source, None, "TOML", shown(str(error), 200)) from None
 
 
-def _refuse_twice(source: str, line: int, places: Places) -> None:
+def _refuse_twice(source: str, line: int, places: Lines) -> None:
     """Say what is given twice, where that is what the reader stopped at."""
     twice = places.twice
     if twice is not None and abs(twice.line - line) <= 1:
-        thing = Report(source, places.lines, FLAT).thing(twice.path)
+        thing = ModelReport(source, places.lines, FLAT).thing(twice.path)
         problem = f"is given twice, first in line {twice.first}; names are unique"
         raise SourceError(source, twice.line, thing, problem)
 
@@ -139,7 +139,7 @@ def _advice(text: str, line: int, said: str) -> str:
     return ""
 
 
-def _json(text: str, source: str, places: Places) -> dict[str, Any]:
+def _json(text: str, source: str, places: Lines) -> dict[str, Any]:
     try:
         data = json.loads(text, parse_constant=_refuse_constant)
     except json.JSONDecodeError as error:

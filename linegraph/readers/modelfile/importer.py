@@ -16,7 +16,7 @@ from linegraph.model.builder import SNAP, Model
 from linegraph.readers.modelfile.building import build
 from linegraph.readers.modelfile.document import parse_document, read_bytes
 from linegraph.readers.modelfile.names import name_problem
-from linegraph.readers.modelfile.report import Report
+from linegraph.readers.modelfile.report import ModelReport
 from linegraph.readers.modelfile.tables import FLAT
 
 
@@ -59,7 +59,7 @@ def parse(text: bytes, source: str, *, snap: float = SNAP) -> Model:
         ('pendulum', ['hinge'])
     """
     document = parse_document(text, source)
-    report = Report(source, document.lines, FLAT)
+    report = ModelReport(source, document.lines, FLAT)
     stem = PurePath(source).stem
     model = build(document, stem if not name_problem(stem, dots=True) else "model", report, snap)
     report.conclude()

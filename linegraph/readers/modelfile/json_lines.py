@@ -10,7 +10,7 @@ import json
 import re
 from typing import TYPE_CHECKING
 
-from linegraph.readers.modelfile.places import Places, Stop
+from linegraph.readers.modelfile.places import Lines, NotUnderstood
 
 if TYPE_CHECKING:
     from linegraph.readers.modelfile.report import Path
@@ -20,22 +20,22 @@ _STRING = re.compile(r'"(?:[^"\\\n]++|\\.)*+"')
 _SCALAR = re.compile(r"[A-Za-z0-9.+-]++")
 
 
-def locate(text: str) -> Places:
+def locate(text: str) -> Lines:
     """The places in a JSON text, as far as it is JSON.
 
     Raises:
         Limit: it is larger or deeper than any model.
     """
-    places = Places(text)
-    with contextlib.suppress(Stop):
-        _Scanner(text, places).value(())
+    places = Lines(text)
+    with contextlib.suppress(NotUnderstood):
+        _JsonScanner(text, places).value(())
     return places
 
 
-class _Scanner:
+class _JsonScanner:
     """Walks the text once."""
 
-    def __init__(self, text: str, places: Places) -> None:
+    def __init__(self, text: str, places: Lines) -> None:
         self._text = text
         self._places = places
         self._at = 0
@@ -66,7 +66,7 @@ class _Scanner:
     def _token(self, pattern: re.Pattern[str]) -> str:
         found = pattern.match(self._text, self._at)
         if found is None:
-            raise Stop
+            raise NotUnderstood
         self._at = found.end()
         return found[0]
 
@@ -87,16 +87,16 @@ class _Scanner:
             self._at += 1
             self._skip()
         if not self._text.startswith(end, self._at):
-            raise Stop
+            raise NotUnderstood
         self._at += 1
 
     def _key(self) -> str:
         key = self._text_here()
         self._skip()
         if not self._text.startswith(":", self._at):
-            raise Stop
+            raise NotUnderstood
         self._at += 1
         try:
             return str(json.loads(key))
         except ValueError:
-            raise Stop from None
+            raise NotUnderstood from None

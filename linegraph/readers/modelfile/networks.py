@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from linegraph.components.domains import DOMAINS, SPATIAL
 from linegraph.components.scalar import COMPONENTS
 from linegraph.components.scalar.base import ACROSS, THROUGH, Component
-from linegraph.components.scalar.element import Equation
+from linegraph.components.scalar.element import LawEquation
 from linegraph.readers.modelfile.expressions import Scope, read_expression
 from linegraph.readers.modelfile.fields import Field, Table
 from linegraph.readers.modelfile.kinds import (
@@ -20,9 +20,9 @@ from linegraph.readers.modelfile.kinds import (
     Flag,
     Items,
     JointName,
-    Number,
+    NumberOrFormula,
     Schema,
-    Text,
+    TextKind,
     Word,
     said,
 )
@@ -58,7 +58,7 @@ class Vertex:
 
 
 @dataclass(frozen=True)
-class Domain:
+class DomainName:
     """A scalar subspace."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
@@ -101,7 +101,7 @@ class Several:
 
 
 @dataclass(frozen=True)
-class Law:
+class LawText:
     """An equation in quotes.
 
     Attributes:
@@ -119,7 +119,7 @@ class Law:
             read_expression(side, Scope.NETWORK, spot, names, self.own) for side in value.split("=")
         ]
         left, right = sides
-        return WRONG if left is None or right is None else Equation(left, right)
+        return WRONG if left is None or right is None else LawEquation(left, right)
 
     def schema(self) -> Schema:
         """A string."""
@@ -136,8 +136,8 @@ _PLACED: Mapping[str, Kind] = {
     "joint": JointName(),
     "windings": Several(_VERTICES, "a list of windings, each [tail, head],"),
     "of": Several(Vertex(), "a list of names of components or force elements"),
-    "domain": Domain(),
-    "domains": Items(Domain(), 2, "a list of two domains"),
+    "domain": DomainName(),
+    "domains": Items(DomainName(), 2, "a list of two domains"),
     "keeps": Word((ACROSS, THROUGH)),
 }
 """What fields hold that have one meaning in all components."""
@@ -158,7 +158,7 @@ def component_table(name: str, abouts: Callable[[type], dict[str, str]]) -> Tabl
         if f.name != "name"
     }
     if name == "element":
-        entries["domain"] = Field(Domain(), told["domain"].rstrip("."), True)
+        entries["domain"] = Field(DomainName(), told["domain"].rstrip("."), True)
     groups = kind.needs
     places = tuple(key for key in ("joint", "points", "shaft") if key in entries)
     if places:
@@ -173,8 +173,8 @@ def _kind_of(kind: type[Component], key: str, annotation: str) -> Kind:
         return _PLACED[key]
     if kind.kind == "element":
         names = ("x", "y", "s")
-        return Law(names) if key == "law" else Number(Scope.NETWORK, own=names)
-    number = Number(Scope.NETWORK, own=own)
+        return LawText(names) if key == "law" else NumberOrFormula(Scope.NETWORK, own=names)
+    number = NumberOrFormula(Scope.NETWORK, own=own)
     if annotation == "tuple[tuple[Any, ...], ...]":
         return Several(Several(number, "a row of the matrix, a list,"), "a matrix, a list of rows,")
     if annotation.startswith("tuple[Any, ...]"):
@@ -184,9 +184,9 @@ def _kind_of(kind: type[Component], key: str, annotation: str) -> Kind:
 
 VARIABLE = Table(
     {
-        "name": Field(Text(), "what it is called", True),
-        "unit": Field(Text(), "its unit, such as Pa or m^3/s", True),
-        "letter": Field(Text(8), "what names of states begin with", True),
+        "name": Field(TextKind(), "what it is called", True),
+        "unit": Field(TextKind(), "its unit, such as Pa or m^3/s", True),
+        "letter": Field(TextKind(8), "what names of states begin with", True),
     }
 )
 DOMAIN = Table(

@@ -30,7 +30,7 @@ class Limit(Exception):
         self.problem = problem
 
 
-class Stop(Exception):
+class NotUnderstood(Exception):
     """Here is what the scanner does not understand."""
 
 
@@ -42,7 +42,7 @@ class Twice(NamedTuple):
     first: int
 
 
-class Places:
+class Lines:
     """The line of every key, in the order of the text.
 
     Attributes:

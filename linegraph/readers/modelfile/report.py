@@ -23,7 +23,7 @@ Path = tuple[str | int, ...]
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
-class Report:
+class ModelReport:
     """Collects the errors of one file.
 
     Args:
@@ -108,7 +108,7 @@ class Report:
 class Spot(NamedTuple):
     """A place in the file, to blame."""
 
-    report: Report
+    report: ModelReport
     path: Path
 
     def at(self, *keys: str | int) -> Spot:

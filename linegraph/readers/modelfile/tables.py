@@ -31,17 +31,24 @@ from linegraph.readers.modelfile.kinds import (
     JointName,
     Kind,
     Label,
-    Number,
+    NumberOrFormula,
     Schema,
     Terminal,
-    Text,
+    TextKind,
     Word,
     said,
     vector,
 )
 from linegraph.readers.modelfile.networks import DOMAIN, component_table
 from linegraph.readers.modelfile.report import shown
-from linegraph.readers.modelfile.timed import BY_INPUT, Coordinates, Listed, Motion, Start, Timed
+from linegraph.readers.modelfile.timed import (
+    BY_INPUT,
+    Coordinates,
+    Listed,
+    PrescribedMotion,
+    Start,
+    Timed,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -55,7 +62,7 @@ _ATTRIBUTE = re.compile(r"^ {4}(\w+(?:, \w+)*): (.*(?:\n {8,}\S.*)*)", re.MULTIL
 
 
 @dataclass(frozen=True)
-class Inertia:
+class InertiaTable:
     """Entries by name, three moments, or a 3 x 3 matrix."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
@@ -66,7 +73,7 @@ class Inertia:
             spot.error(f"{_INERTIAS} is wanted, not {said(value)}")
             return WRONG
         if not any(isinstance(row, list) for row in value):
-            found = Items(Number(least=0), 3, "").read(value, spot, names)
+            found = Items(NumberOrFormula(least=0), 3, "").read(value, spot, names)
             return WRONG if found is WRONG else dict(zip(("xx", "yy", "zz"), found, strict=True))
         return self._matrix(value, spot, names)
 
@@ -138,18 +145,18 @@ class Turning:
 
 INERTIA = Table(
     {
-        key: Field(Number(least=0 if key[0] == key[1] else None), f"entry {key} (kg m^2)")
+        key: Field(NumberOrFormula(least=0 if key[0] == key[1] else None), f"entry {key} (kg m^2)")
         for key in ("xx", "yy", "zz", "xy", "xz", "yz")
     },
     about="the tensor's own entries; those left out are 0",
 )
 
-_UNIT = Field(Text(), "its unit, for readers")
-_ABOUT = Field(Text(), "its meaning, for readers")
+_UNIT = Field(TextKind(), "its unit, for readers")
+_ABOUT = Field(TextKind(), "its meaning, for readers")
 
 PARAMETER = Table(
     {
-        "value": Field(Number(), "a number, or an expression of earlier parameters", True),
+        "value": Field(NumberOrFormula(), "a number, or an expression of earlier parameters", True),
         "unit": _UNIT,
         "about": _ABOUT,
     }
@@ -161,7 +168,7 @@ FRAME = Table(
         "at": Field(vector(), "origin in the body's frame (m)"),
         "rpy": Field(vector(folded=True), "turns about the body's fixed x, y, z (rad)"),
         "axis": Field(Direction(), "direction to turn about"),
-        "angle": Field(Number(folded=True), "angle of the turn about axis (rad)"),
+        "angle": Field(NumberOrFormula(folded=True), "angle of the turn about axis (rad)"),
     },
     exclusive=(("rpy", "axis"), ("rpy", "angle")),
 )
@@ -169,14 +176,14 @@ TURNING = Table(
     {
         "axis": Field(Direction(), "direction to turn about"),
         "angle": Field(Timed(), "angle of the turn about axis (rad)"),
-        "rpy": Field(Motion(3), "turns about fixed x, y, z (rad)"),
+        "rpy": Field(PrescribedMotion(3), "turns about fixed x, y, z (rad)"),
     },
     needs=(("axis", "rpy"), ("angle", "rpy")),
     exclusive=(("rpy", "axis"), ("rpy", "angle")),
 )
 BASEMENT = Table(
     {
-        "position": Field(Motion(3), 'three expressions of t (m), or "input"'),
+        "position": Field(PrescribedMotion(3), 'three expressions of t (m), or "input"'),
         "rotation": Field(Turning(), 'a turn as a function of t, or "input"'),
     },
     about='a massless body called "basement" in prescribed motion, for others to stand on',
@@ -186,9 +193,11 @@ GRAVITY = Table(
 )
 BODY_TABLE = Table(
     {
-        "mass": Field(Number(least=0), "kg; 0 if left out"),
+        "mass": Field(NumberOrFormula(least=0), "kg; 0 if left out"),
         "mass_center": Field(vector(), "in the body's frame (m); its origin if left out"),
-        "inertia": Field(Inertia(), "kg m^2, in body axes, about the mass centre; 0 if left out"),
+        "inertia": Field(
+            InertiaTable(), "kg m^2, in body axes, about the mass centre; 0 if left out"
+        ),
         "first_moment": Field(
             vector(),
             "mass times mass centre (kg m), instead of mass_center; the inertia is then about the origin",
@@ -200,9 +209,11 @@ BODY_TABLE = Table(
 FOLLOWS = Table(
     {
         "joint": Field(JointName(), "the joint it follows", True),
-        "ratio": Field(Number(folded=True), "its coordinate over that of the other; 1 if left out"),
+        "ratio": Field(
+            NumberOrFormula(folded=True), "its coordinate over that of the other; 1 if left out"
+        ),
         "offset": Field(
-            Number(folded=True), "its coordinate where that of the other is 0 (rad or m)"
+            NumberOrFormula(folded=True), "its coordinate where that of the other is 0 (rad or m)"
         ),
     }
 )
@@ -218,20 +229,26 @@ LOAD = Table(
 ROTOR = Table(
     {
         "joint": Field(JointName(), "the revolute joint it drives", True),
-        "inertia": Field(Number(least=0), "about the joint's axis (kg m^2)", True),
-        "ratio": Field(Number(), "turns of the rotor for one of the joint; 1 if left out"),
+        "inertia": Field(NumberOrFormula(least=0), "about the joint's axis (kg m^2)", True),
+        "ratio": Field(NumberOrFormula(), "turns of the rotor for one of the joint; 1 if left out"),
     }
 )
 RELATION = Table(
     {
         "rate": Field(
-            Number(Scope.STATE), "an expression that is zero, linear in the rates der(...)", True
+            NumberOrFormula(Scope.STATE),
+            "an expression that is zero, linear in the rates der(...)",
+            True,
         )
     },
     about="a constraint on velocities: a(q) v = b(q, t)",
 )
 OUTPUT = Table(
-    {"value": Field(Number(Scope.OUTPUT), "an expression", True), "unit": _UNIT, "about": _ABOUT}
+    {
+        "value": Field(NumberOrFormula(Scope.OUTPUT), "an expression", True),
+        "unit": _UNIT,
+        "about": _ABOUT,
+    }
 )
 FORMULATION = Table(
     {
@@ -247,7 +264,7 @@ FORMULATION = Table(
             "what a closed mechanism is reduced to; chosen automatically if left out",
         ),
         "baumgarte": Field(
-            Items(Number(least=0), 2, "a list [alpha, beta]"),
+            Items(NumberOrFormula(least=0), 2, "a list [alpha, beta]"),
             "stabilises constraints in forward_dynamics: -2 alpha rate - beta^2 error (1/s)",
         ),
         "reactions": Field(
@@ -258,7 +275,7 @@ FORMULATION = Table(
 )
 HEAD = {
     "name": Field(Label(), "prefix of everything emitted; the file's own name if left out"),
-    "description": Field(Text(2000, lines=True), "one paragraph for the head of emitted files"),
+    "description": Field(TextKind(2000, lines=True), "one paragraph for the head of emitted files"),
 }
 
 
@@ -273,12 +290,12 @@ def _abouts(kind: type) -> dict[str, str]:
 
 
 _KINDS: Mapping[str, Kind] = {
-    "Any": Number(),
+    "Any": NumberOrFormula(),
     "Vector": vector(),
     "Vector | None": Direction(),
     "bool": Flag(),
-    "str": Text(),
-    "str | None": Text(),
+    "str": TextKind(),
+    "str | None": TextKind(),
     "tuple[Vector, Vector]": Items(Direction(), 2, "a list of two directions"),
     "tuple[Any, ...]": Parts(),
 }
@@ -322,7 +339,7 @@ def joint_table(name: str) -> Table:
     if freedoms != 0:
         entries |= {
             "effort": Field(Flag(), "whether a force or torque along each velocity is an input"),
-            "motion": Field(Motion(), 'prescribed: expressions of t, or "input"'),
+            "motion": Field(PrescribedMotion(), 'prescribed: expressions of t, or "input"'),
         }
         entries["start"] = Field(
             Start(), "where the search for a position that closes all loops begins; 0 if left out"
@@ -351,7 +368,7 @@ def element_table(name: str) -> Table:
         "joint": Field(JointName(), "along the coordinate of this joint"),
     }
     own = {
-        key: Field(Number(Scope.LAW if key in kind.laws else Scope.STATE), entry.about)
+        key: Field(NumberOrFormula(Scope.LAW if key in kind.laws else Scope.STATE), entry.about)
         for key, entry in _own(kind, Element).items()
     }
     about = (kind.__doc__ or "").strip().split("\n")[0]

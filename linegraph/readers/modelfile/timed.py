@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.model.choices import COORDINATES
 from linegraph.readers.modelfile.expressions import Scope
-from linegraph.readers.modelfile.kinds import WRONG, Items, Number, Schema, Word, said
+from linegraph.readers.modelfile.kinds import WRONG, Items, NumberOrFormula, Schema, Word, said
 from linegraph.readers.modelfile.report import shown
 
 if TYPE_CHECKING:
@@ -24,15 +24,15 @@ class Timed:
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
         """The expression, or the word."""
-        return value if value == BY_INPUT else Number(Scope.TIME).read(value, spot, names)
+        return value if value == BY_INPUT else NumberOrFormula(Scope.TIME).read(value, spot, names)
 
     def schema(self) -> Schema:
         """A number or a text."""
-        return Number(Scope.TIME).schema()
+        return NumberOrFormula(Scope.TIME).schema()
 
 
 @dataclass(frozen=True)
-class Motion:
+class PrescribedMotion:
     """A prescribed motion: one for each coordinate, or "input" for all.
 
     Attributes:
@@ -67,14 +67,18 @@ class Start:
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
         """A number or a tuple."""
         if not isinstance(value, list):
-            return Number().read(value, spot, names)
+            return NumberOrFormula().read(value, spot, names)
         count = len(value) if 1 <= len(value) <= MOST_COORDINATES else 1
-        return Items(Number(), count, "one number for each coordinate").read(value, spot, names)
+        return Items(NumberOrFormula(), count, "one number for each coordinate").read(
+            value, spot, names
+        )
 
     def schema(self) -> Schema:
         """A number, a text or a list."""
-        items = Items(Number(), 1, "").schema()
-        return {"anyOf": [*Number().schema()["anyOf"], items | {"maxItems": MOST_COORDINATES}]}
+        items = Items(NumberOrFormula(), 1, "").schema()
+        return {
+            "anyOf": [*NumberOrFormula().schema()["anyOf"], items | {"maxItems": MOST_COORDINATES}]
+        }
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import re
 import tomllib
 from typing import TYPE_CHECKING
 
-from linegraph.readers.modelfile.places import Places, Stop
+from linegraph.readers.modelfile.places import Lines, NotUnderstood
 
 if TYPE_CHECKING:
     from linegraph.readers.modelfile.report import Path
@@ -31,7 +31,7 @@ _STRING = re.compile(
 _SCALAR = re.compile(r"[^\s,\[\]{}#=\"'][^,\]}#\n]*+")
 
 
-def locate(text: str) -> Places:
+def locate(text: str) -> Lines:
     r"""The places in a TOML text with LF line ends, as far as it is TOML.
 
     Raises:
@@ -42,8 +42,8 @@ def locate(text: str) -> Places:
         >>> places.lines["body", "arm", "mass"]
         2
     """
-    places = Places(text)
-    with contextlib.suppress(Stop):
+    places = Lines(text)
+    with contextlib.suppress(NotUnderstood):
         _Scanner(text, places).scan()
     return places
 
@@ -51,7 +51,7 @@ def locate(text: str) -> Places:
 class _Scanner:
     """Walks the text once."""
 
-    def __init__(self, text: str, places: Places) -> None:
+    def __init__(self, text: str, places: Lines) -> None:
         self._text = text
         self._places = places
         self._at = 0
@@ -67,7 +67,7 @@ class _Scanner:
             else:
                 self._pair(table)
             if not self._match(_LINE_END):
-                raise Stop
+                raise NotUnderstood
             self._match(_GAP)
 
     def _match(self, pattern: re.Pattern[str]) -> str | None:
@@ -80,7 +80,7 @@ class _Scanner:
 
     def _expect(self, text: str) -> None:
         if not self._text.startswith(text, self._at):
-            raise Stop
+            raise NotUnderstood
         self._at += len(text)
 
     def _header(self) -> Path:
@@ -109,7 +109,7 @@ class _Scanner:
             self._match(_BLANK)
             key = self._match(_KEY)
             if key is None:
-                raise Stop
+                raise NotUnderstood
             keys.append(self._plain(key))
             self._places.require_depth(len(keys), self._at)
             self._match(_BLANK)
@@ -125,7 +125,7 @@ class _Scanner:
         try:
             return next(iter(tomllib.loads(f"{key} = 0")))
         except tomllib.TOMLDecodeError:
-            raise Stop from None
+            raise NotUnderstood from None
 
     def _pair(self, table: Path) -> None:
         """``key = value``."""
@@ -151,11 +151,11 @@ class _Scanner:
             self._inline(path)
         elif first in ("'", '"'):
             if (text := self._match(_STRING)) is None:
-                raise Stop
+                raise NotUnderstood
             self._places.string(len(text), start)
         else:
             if (text := self._match(_SCALAR)) is None:
-                raise Stop
+                raise NotUnderstood
             self._places.scalar(len(text.rstrip()), start)
 
     def _array(self, path: Path) -> None:

@@ -10,14 +10,14 @@ from linegraph.model.builder import Model
 from linegraph.model.name_register import claims_of
 from linegraph.readers.urdf.mimics import Followers, followers_of
 from linegraph.readers.urdf.names import ROOT
-from linegraph.readers.urdf.report import Report, named
+from linegraph.readers.urdf.report import UrdfReport, named
 from linegraph.readers.urdf.stems import MOMENTS, OFFSETS, stems
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from linegraph.readers.urdf.joints import Joint
-    from linegraph.readers.urdf.links import Inertial, Link
+    from linegraph.readers.urdf.joints import UrdfJoint
+    from linegraph.readers.urdf.links import Inertial, UrdfLink
     from linegraph.readers.urdf.structure import Tree
     from linegraph.spatial.rotation import Inertia
     from linegraph.spatial.vector import Vector
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _AXES = ("xx", "xy", "xz", "yy", "yz", "zz")
 
 
-class Options(NamedTuple):
+class UrdfOptions(NamedTuple):
     """How a robot becomes a model.
 
     Attributes:
@@ -39,7 +39,7 @@ class Options(NamedTuple):
     snap: float
 
 
-def build(name: str, tree: Tree, options: Options, report: Report) -> Model:
+def build(name: str, tree: Tree, options: UrdfOptions, report: UrdfReport) -> Model:
     """Build the model: bodies and joints in the order of the walk.
 
     Raises:
@@ -64,7 +64,7 @@ def build(name: str, tree: Tree, options: Options, report: Report) -> Model:
     return model
 
 
-def _add_base(model: Model, tree: Tree, options: Options, report: Report) -> None:
+def _add_base(model: Model, tree: Tree, options: UrdfOptions, report: UrdfReport) -> None:
     """Connect the root link to ground, before all other joints so that its v comes first."""
     joints = {joint.name: joint for joint in tree.walk}
     if options.floating:
@@ -81,13 +81,13 @@ def _add_base(model: Model, tree: Tree, options: Options, report: Report) -> Non
     model.fixed(weld, (model.ground, tree.root.name))
 
 
-def _add_joint(model: Model, joint: Joint, at: Sequence[Any]) -> None:
+def _add_joint(model: Model, joint: UrdfJoint, at: Sequence[Any]) -> None:
     """Put a frame of the joint's name on the parent; the head is the child link itself."""
     tail = BodyHandle(model, joint.parent).frame(joint.name, at, joint.rpy)
     model.add_joint(JOINTS[joint.kind](joint.name, (tail, joint.child), joint.axis))
 
 
-def _add_followers(model: Model, tree: Tree, followers: Followers, report: Report) -> None:
+def _add_followers(model: Model, tree: Tree, followers: Followers, report: UrdfReport) -> None:
     for joint in tree.walk:
         with report.placed(joint.line, named("joint", joint.name)):
             if joint.name in followers.still:
@@ -97,7 +97,7 @@ def _add_followers(model: Model, tree: Tree, followers: Followers, report: Repor
                 model.couple(joint.name, mimic.master, mimic.multiplier, mimic.offset)
 
 
-def _mention_dampers(tree: Tree, report: Report) -> None:
+def _mention_dampers(tree: Tree, report: UrdfReport) -> None:
     for joint in tree.walk:
         if joint.damped:
             text = "damping and friction are ignored"
@@ -110,7 +110,7 @@ class _Folded:
     def __init__(self, model: Model) -> None:
         self._model = model
 
-    def link(self, link: Link) -> None:
+    def link(self, link: UrdfLink) -> None:
         """Add a body with its mass centre and central inertia."""
         if link.inertial is None:
             self._model.body(link.name)
@@ -119,7 +119,7 @@ class _Folded:
         inertia = dict(zip(_AXES, given.tensor, strict=True))
         self._model.body(link.name, mass=given.mass, mass_center=given.center, inertia=inertia)
 
-    def offset(self, joint: Joint) -> Sequence[Any]:
+    def offset(self, joint: UrdfJoint) -> Sequence[Any]:
         """The joint's position in the parent link (m)."""
         return joint.at
 
@@ -141,7 +141,7 @@ class _Symbolic:
         self._links: Mapping[str, str] = stems(tree.links, MOMENTS, taken)
         self._joints: Mapping[str, str] = stems((j.name for j in tree.walk), OFFSETS, taken)
 
-    def link(self, link: Link) -> None:
+    def link(self, link: UrdfLink) -> None:
         """Add a body whose mass, first moment and inertia about its origin are parameters."""
         if link.inertial is None:
             self._model.body(link.name)
@@ -162,7 +162,7 @@ class _Symbolic:
         entries = dict(zip(_AXES, tensor, strict=True))
         self._model.body(link.name, mass=m, first_moment=(mx, my, mz), inertia=entries)
 
-    def offset(self, joint: Joint) -> Sequence[Any]:
+    def offset(self, joint: UrdfJoint) -> Sequence[Any]:
         """Three parameters: the joint's position in the parent link."""
         stem, who = self._joints[joint.name], named("joint", joint.name)
         return [

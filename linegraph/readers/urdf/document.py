@@ -12,7 +12,7 @@ import re
 import stat
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from linegraph.readers.urdf.report import Report, shown
+from linegraph.readers.urdf.report import UrdfReport, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -49,7 +49,7 @@ _DTD_REFUSED = (
 _UTF8 = "; save the file as UTF-8"
 
 
-class Element(NamedTuple):
+class XmlElement(NamedTuple):
     """An XML element.
 
     Attributes:
@@ -63,7 +63,7 @@ class Element(NamedTuple):
     tag: str
     line: int
     attributes: Mapping[str, str]
-    children: tuple[Element, ...]
+    children: tuple[XmlElement, ...]
     text: str = ""
 
 
@@ -73,7 +73,7 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
     Raises:
         SourceError: it is missing, unreadable, no regular file or over 16 MiB.
     """
-    report = Report(os.fsdecode(path))
+    report = UrdfReport(os.fsdecode(path))
     try:
         _require_regular(os.stat(path), report)
         # without O_NONBLOCK, opening a FIFO put in the file's place meanwhile would wait for ever
@@ -88,7 +88,7 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
     return data
 
 
-def parse_xml(data: bytes, report: Report) -> Element:
+def parse_xml(data: bytes, report: UrdfReport) -> XmlElement:
     """The root element of an XML document.
 
     Raises:
@@ -101,14 +101,14 @@ def parse_xml(data: bytes, report: Report) -> Element:
     return _converted(root, report, 1, 1)
 
 
-def _require_regular(status: os.stat_result, report: Report) -> None:
+def _require_regular(status: os.stat_result, report: UrdfReport) -> None:
     if stat.S_ISDIR(status.st_mode):
         raise report.error(None, "", "is a directory; a URDF file is needed")
     if not stat.S_ISREG(status.st_mode):
         raise report.error(None, "", "is not a regular file")
 
 
-def _checked(data: bytes, report: Report) -> bytes:
+def _checked(data: bytes, report: UrdfReport) -> bytes:
     """The bytes without byte order mark, if a parser may see them."""
     if len(data) > MOST_BYTES:
         raise report.error(None, "", f"is over {MOST_BYTES // 2**20} MiB, more than is read")
@@ -127,7 +127,7 @@ def _checked(data: bytes, report: Report) -> bytes:
     return data
 
 
-def _require_encoding(data: bytes, report: Report) -> None:
+def _require_encoding(data: bytes, report: UrdfReport) -> None:
     declared = _DECLARED.match(data)
     encoding = declared[1].decode("ascii", "replace").lower() if declared else "utf-8"
     if encoding not in _ENCODINGS:
@@ -141,7 +141,7 @@ def _require_encoding(data: bytes, report: Report) -> None:
             raise report.error(line, "", problem + _UTF8) from None
 
 
-def _require_plain_start(data: bytes, report: Report) -> None:
+def _require_plain_start(data: bytes, report: UrdfReport) -> None:
     """Look at what comes first after the prolog: a DOCTYPE can stand nowhere else."""
     found = _PROLOG.match(data)
     start = found.end() if found else 0
@@ -160,7 +160,7 @@ def _line_at(data: bytes, offset: int) -> int:
     return data.count(b"\n", 0, offset) + 1
 
 
-def _parsed(data: bytes, report: Report) -> Any:
+def _parsed(data: bytes, report: UrdfReport) -> Any:
     """The root as lxml sees it.
 
     Some tools write prefixes that nothing declares. They are declared here and the whole is parsed again:
@@ -220,14 +220,14 @@ def _declaring(prefixes: Iterable[str], data: bytes) -> bytes:
     return data[:end] + declarations.encode() + data[end:]
 
 
-def _refuse(error: Any, errors: list[Any], report: Report) -> NoReturn:
+def _refuse(error: Any, errors: list[Any], report: UrdfReport) -> NoReturn:
     """Say the first thing that is wrong; what follows is mostly its consequence."""
     line, message = (errors[0].line, errors[0].message) if errors else (error.lineno, error.msg)
     plain = re.sub(r", (use|try) XML_PARSE_HUGE.*", "", " ".join(str(message).split()))
     raise report.error(line or None, "XML", shown(plain, 200)) from None
 
 
-def _converted(node: Any, report: Report, depth: int, parent_line: int) -> Element:
+def _converted(node: Any, report: UrdfReport, depth: int, parent_line: int) -> XmlElement:
     # after line 65535 libxml2 knows the lines only of elements with text in them, so inherit
     line = max(node.sourceline or 1, parent_line)
     if depth > DEEPEST:
@@ -235,12 +235,12 @@ def _converted(node: Any, report: Report, depth: int, parent_line: int) -> Eleme
     if len(node.attrib) > WIDEST:
         raise report.error(line, "XML", f"an element has more than {WIDEST} attributes")
     tag = _tag(node)
-    children: tuple[Element, ...] = ()
+    children: tuple[XmlElement, ...] = ()
     if tag not in _OPAQUE:
         elements = (child for child in node if isinstance(child.tag, str))
         children = tuple(_converted(child, report, depth + 1, line) for child in elements)
     text = (node.text or "")[:LONGEST_TEXT].strip()
-    return Element(tag, line, dict(node.items()), children, text)
+    return XmlElement(tag, line, dict(node.items()), children, text)
 
 
 def _tag(node: Any) -> str:

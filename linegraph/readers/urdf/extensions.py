@@ -15,8 +15,8 @@ from linegraph.readers.urdf.report import IGNORED, mechanical, named, shown
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from linegraph.readers.urdf.document import Element
-    from linegraph.readers.urdf.report import Report
+    from linegraph.readers.urdf.document import XmlElement
+    from linegraph.readers.urdf.report import UrdfReport
 
 TOOLS = frozenset({"gazebo", "transmission", "ros2_control"})
 """Elements of other tools without a prefix: well known, and mostly without effect on the motion."""
@@ -47,7 +47,7 @@ _ZERO = re.compile(r"[+-]?0*\.?0*(?:[eE][+-]?[0-9]+)?")
 _MOST_NAMED = 4
 
 
-def mention_extensions(root: Element, report: Report) -> None:
+def mention_extensions(root: XmlElement, report: UrdfReport) -> None:
     """Warn of extensions that say something of the motion, in the robot, its links and its joints."""
     _mention(root, "robot", report)
     for part in root.children:
@@ -55,7 +55,7 @@ def mention_extensions(root: Element, report: Report) -> None:
             _mention(part, named(part.tag, part.attributes["name"]), report)
 
 
-def _mention(owner: Element, thing: str, report: Report) -> None:
+def _mention(owner: XmlElement, thing: str, report: UrdfReport) -> None:
     for child in owner.children:
         if ":" in child.tag:
             found = [child] if mechanical(child.tag) else list(_prefixed(child))
@@ -67,7 +67,7 @@ def _mention(owner: Element, thing: str, report: Report) -> None:
             _tell(child, found, thing, report)
 
 
-def _tell(child: Element, found: list[Element], thing: str, report: Report) -> None:
+def _tell(child: XmlElement, found: list[XmlElement], thing: str, report: UrdfReport) -> None:
     report.dropped.append((child.line, child.tag))
     own = child.attributes.get("name") or child.attributes.get("reference")
     owner = named(child.tag, own) if thing == "robot" and own else thing
@@ -86,7 +86,7 @@ def _listed(parts: list[str]) -> str:
     return ", ".join(parts[:_MOST_NAMED]) + ", ..." * (len(parts) > _MOST_NAMED)
 
 
-def _prefixed(element: Element) -> Iterator[Element]:
+def _prefixed(element: XmlElement) -> Iterator[XmlElement]:
     for child in element.children:
         if mechanical(child.tag):
             yield child
@@ -94,7 +94,7 @@ def _prefixed(element: Element) -> Iterator[Element]:
             yield from _prefixed(child)
 
 
-def _of_tools(element: Element) -> Iterator[Element]:
+def _of_tools(element: XmlElement) -> Iterator[XmlElement]:
     """What of the elements of other tools changes the motion, zeros left out."""
     for child in element.children:
         local = child.tag.rpartition(":")[2]

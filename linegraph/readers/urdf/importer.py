@@ -7,13 +7,13 @@ import os
 from pathlib import PurePath
 
 from linegraph.model.builder import SNAP, Model
-from linegraph.readers.urdf.building import Options, build
-from linegraph.readers.urdf.document import Element, parse_xml, read_bytes
+from linegraph.readers.urdf.building import UrdfOptions, build
+from linegraph.readers.urdf.document import XmlElement, parse_xml, read_bytes
 from linegraph.readers.urdf.extensions import TOOLS, mention_extensions
 from linegraph.readers.urdf.joints import joint_of
 from linegraph.readers.urdf.links import link_of
-from linegraph.readers.urdf.parts import Part, named_part
-from linegraph.readers.urdf.report import Report, shown
+from linegraph.readers.urdf.parts import XmlPart, named_part
+from linegraph.readers.urdf.report import UrdfReport, shown
 from linegraph.readers.urdf.structure import tree_of
 
 _CHILDREN = ("link", "joint")
@@ -85,10 +85,10 @@ def parse(
     """
     if base not in ("fixed", "floating"):
         raise ValueError(f'base must be "fixed" or "floating", not {base!r}')
-    report = Report(source)
+    report = UrdfReport(source)
     root = parse_xml(text, report)
     _require_urdf(root, source, report)
-    robot = Part(report, "robot", root)
+    robot = XmlPart(report, "robot", root)
     robot.check_attributes(("name",), ("version",))
     robot.check_children(_CHILDREN, _IGNORED)
     mention_extensions(root, report)
@@ -96,13 +96,13 @@ def parse(
     links = [link_of(e, report, snap) for e in root.children if e.tag == "link"]
     joints = [joint_of(e, report, snap) for e in root.children if e.tag == "joint"]
     tree = tree_of(links, joints, root.line, base == "floating", report)
-    model = build(name, tree, Options(base == "floating", symbolic, snap), report)
+    model = build(name, tree, UrdfOptions(base == "floating", symbolic, snap), report)
     model.about = f"Derived from a URDF with SHA-256 {hashlib.sha256(text).hexdigest()}."
     model.warnings += report.warnings
     return model
 
 
-def _require_urdf(root: Element, source: str, report: Report) -> None:
+def _require_urdf(root: XmlElement, source: str, report: UrdfReport) -> None:
     if root.tag != "robot":
         known = _OTHERS.get(root.tag)
         said = (
@@ -118,14 +118,14 @@ def _require_urdf(root: Element, source: str, report: Report) -> None:
         raise report.error(None, "", f"is a xacro file; {_RUN_XACRO}")
 
 
-def _xacro_element(element: Element) -> Element | None:
+def _xacro_element(element: XmlElement) -> XmlElement | None:
     if element.tag.startswith("xacro:"):
         return element
     found = (_xacro_element(child) for child in element.children if child.tag not in TOOLS)
     return next((one for one in found if one is not None), None)
 
 
-def _name_of(root: Element, source: str, report: Report) -> str:
+def _name_of(root: XmlElement, source: str, report: UrdfReport) -> str:
     """The robot's name; where there is none, that of the file."""
     if root.attributes.get("name", "").strip():
         return named_part(report, root)[0]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.readers.urdf.links import origin_of
-from linegraph.readers.urdf.parts import Part, length, named_part
+from linegraph.readers.urdf.parts import XmlPart, length, named_part
 from linegraph.readers.urdf.report import nearest, shown
 
 if TYPE_CHECKING:
-    from linegraph.readers.urdf.document import Element
-    from linegraph.readers.urdf.report import Report
+    from linegraph.readers.urdf.document import XmlElement
+    from linegraph.readers.urdf.report import UrdfReport
     from linegraph.spatial.vector import Vector
 
 KINDS = {
@@ -44,7 +44,7 @@ class Mimic(NamedTuple):
     line: int
 
 
-class Joint(NamedTuple):
+class UrdfJoint(NamedTuple):
     """A joint of the robot.
 
     Attributes:
@@ -70,7 +70,7 @@ class Joint(NamedTuple):
     child_line: int
 
 
-def joint_of(element: Element, report: Report, snap: float) -> Joint:
+def joint_of(element: XmlElement, report: UrdfReport, snap: float) -> UrdfJoint:
     """Read a ``<joint>``.
 
     Args:
@@ -87,14 +87,14 @@ def joint_of(element: Element, report: Report, snap: float) -> Joint:
     kind = _kind(part)
     parent, child = _link_named(part, "parent"), _link_named(part, "child")
     at, rpy = origin_of(part)
-    return Joint(
+    return UrdfJoint(
         name, element.line, kind, parent.word("link"), child.word("link"), at, rpy,
         _axis(part, kind, snap), _mimic(part, kind), _damped(part),
         parent.element.line, child.element.line,
     )  # fmt: skip
 
 
-def _kind(part: Part) -> str:
+def _kind(part: XmlPart) -> str:
     word = part.word("type")
     if word not in KINDS:
         hint = nearest(word, KINDS) or f"; types are {', '.join(KINDS)}"
@@ -102,14 +102,14 @@ def _kind(part: Part) -> str:
     return KINDS[word]
 
 
-def _link_named(part: Part, tag: str) -> Part:
+def _link_named(part: XmlPart, tag: str) -> XmlPart:
     """The ``<parent>`` or ``<child>``, which both name a link."""
     found = part.need(tag)
     found.check_attributes(("link",))
     return found
 
 
-def _axis(part: Part, kind: str, snap: float) -> Vector:
+def _axis(part: XmlPart, kind: str, snap: float) -> Vector:
     axis = part.child("axis")
     if kind in ("fixed", "free"):
         return (0, 0, 1)
@@ -134,7 +134,7 @@ def _direction(unit: Vector, snap: float) -> Vector:
     return clean  # type: ignore[return-value]
 
 
-def _mimic(part: Part, kind: str) -> Mimic | None:
+def _mimic(part: XmlPart, kind: str) -> Mimic | None:
     mimic = part.child("mimic")
     if mimic is None:
         return None
@@ -149,7 +149,7 @@ def _mimic(part: Part, kind: str) -> Mimic | None:
     return Mimic(master, *values, mimic.element.line)
 
 
-def _damped(part: Part) -> bool:
+def _damped(part: XmlPart) -> bool:
     dynamics = part.child("dynamics")
     if dynamics is None:
         return False

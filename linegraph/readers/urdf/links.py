@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.components.body import impossible
-from linegraph.readers.urdf.parts import Part, named_part
+from linegraph.readers.urdf.parts import XmlPart, named_part
 from linegraph.spatial.rotation import Inertia, from_rpy, rotation_of, snapped
 from linegraph.spatial.vector import ZERO, Vector
 
 if TYPE_CHECKING:
-    from linegraph.readers.urdf.document import Element
-    from linegraph.readers.urdf.report import Report
+    from linegraph.readers.urdf.document import XmlElement
+    from linegraph.readers.urdf.report import UrdfReport
 
 ENTRIES = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 _CHILDREN = ("inertial", "visual", "collision")
@@ -42,7 +42,7 @@ class Inertial(NamedTuple):
     tensor: Inertia
 
 
-class Link(NamedTuple):
+class UrdfLink(NamedTuple):
     """A link of the robot; without `inertial` it has no mass."""
 
     name: str
@@ -50,7 +50,7 @@ class Link(NamedTuple):
     inertial: Inertial | None
 
 
-def link_of(element: Element, report: Report, snap: float) -> Link:
+def link_of(element: XmlElement, report: UrdfReport, snap: float) -> UrdfLink:
     """Read a ``<link>``.
 
     Args:
@@ -65,10 +65,10 @@ def link_of(element: Element, report: Report, snap: float) -> Link:
     part.check_attributes(("name",), ("type",))
     part.check_children(_CHILDREN, _IGNORED)
     inertial = part.child("inertial")
-    return Link(name, element.line, None if inertial is None else _inertial(inertial, snap))
+    return UrdfLink(name, element.line, None if inertial is None else _inertial(inertial, snap))
 
 
-def _inertial(part: Part, snap: float) -> Inertial:
+def _inertial(part: XmlPart, snap: float) -> Inertial:
     part.check_children(("origin", "mass", "inertia"), ())
     mass = _mass(part)
     center, rpy = origin_of(part)
@@ -77,7 +77,7 @@ def _inertial(part: Part, snap: float) -> Inertial:
     return Inertial(mass, center, rotation.congruence(written))
 
 
-def origin_of(part: Part) -> tuple[Vector, Vector]:
+def origin_of(part: XmlPart) -> tuple[Vector, Vector]:
     """The ``<origin>`` child: position (m) and roll, pitch, yaw (rad); zeros where it is missing.
 
     Raises:
@@ -94,7 +94,7 @@ def origin_of(part: Part) -> tuple[Vector, Vector]:
     return (x, y, z), (roll, pitch, yaw)
 
 
-def _mass(part: Part) -> float:
+def _mass(part: XmlPart) -> float:
     mass = part.need("mass")
     mass.check_attributes(("value",))
     value = mass.number("value")
@@ -103,7 +103,7 @@ def _mass(part: Part) -> float:
     return value
 
 
-def _tensor(part: Part) -> Inertia:
+def _tensor(part: XmlPart) -> Inertia:
     inertia = part.child("inertia")
     if inertia is None:
         part.warn("<inertial> has no <inertia>; the link is taken as a point mass")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from linegraph.readers.urdf.joints import ONE_FREEDOM, Joint, Mimic
-from linegraph.readers.urdf.report import Report, named, nearest, shown
+from linegraph.readers.urdf.joints import ONE_FREEDOM, Mimic, UrdfJoint
+from linegraph.readers.urdf.report import UrdfReport, named, nearest, shown
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -23,7 +23,7 @@ class Followers(NamedTuple):
     still: Mapping[str, float]
 
 
-def followers_of(joints: Sequence[Joint], report: Report) -> Followers:
+def followers_of(joints: Sequence[UrdfJoint], report: UrdfReport) -> Followers:
     """Sort out the ``<mimic>`` of all joints.
 
     Raises:
@@ -49,7 +49,9 @@ def followers_of(joints: Sequence[Joint], report: Report) -> Followers:
     return Followers(moving, {name: still[name] for name in mimics if name in still})
 
 
-def _check_master(name: str, mimic: Mimic, joints: Mapping[str, Joint], report: Report) -> None:
+def _check_master(
+    name: str, mimic: Mimic, joints: Mapping[str, UrdfJoint], report: UrdfReport
+) -> None:
     who = named("joint", name)
     master = joints.get(mimic.master)
     if master is None:
@@ -66,9 +68,9 @@ def _check_master(name: str, mimic: Mimic, joints: Mapping[str, Joint], report: 
 def _follow(
     name: str,
     mimics: Mapping[str, Mimic],
-    joints: Mapping[str, Joint],
+    joints: Mapping[str, UrdfJoint],
     position: dict[str, float | None],
-    report: Report,
+    report: UrdfReport,
 ) -> None:
     """Go from master to master to one that follows nothing, then note what this means on the way back."""
     way: dict[str, None] = {}

@@ -13,17 +13,17 @@ from linegraph.readers.urdf.report import named, shown
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from linegraph.readers.urdf.joints import Joint
-    from linegraph.readers.urdf.links import Link
-    from linegraph.readers.urdf.report import Report
+    from linegraph.readers.urdf.joints import UrdfJoint
+    from linegraph.readers.urdf.links import UrdfLink
+    from linegraph.readers.urdf.report import UrdfReport
 
 ROOT = "root"
 """The free joint above the root link of a floating robot."""
 
 
 def renamed(
-    links: Sequence[Link], joints: Sequence[Joint], floating: bool, report: Report
-) -> tuple[Sequence[Link], Sequence[Joint]]:
+    links: Sequence[UrdfLink], joints: Sequence[UrdfJoint], floating: bool, report: UrdfReport
+) -> tuple[Sequence[UrdfLink], Sequence[UrdfJoint]]:
     """Rename a link called like ground, and joints whose coordinates would have the name of something else.
 
     A joint x has the coordinate x with the rate x_dot, so that no other joint can be called x_dot; a planar
@@ -51,7 +51,7 @@ def renamed(
     return [link._replace(name=new_links.get(link.name, link.name)) for link in links], found
 
 
-def _of_links(links: Sequence[Link], report: Report) -> dict[str, str]:
+def _of_links(links: Sequence[UrdfLink], report: UrdfReport) -> dict[str, str]:
     names = {link.name for link in links}
     found = {}
     for link in links:
@@ -65,7 +65,7 @@ def _of_links(links: Sequence[Link], report: Report) -> dict[str, str]:
     return found
 
 
-def _of_joints(joints: Sequence[Joint], floating: bool, report: Report) -> dict[str, str]:
+def _of_joints(joints: Sequence[UrdfJoint], floating: bool, report: UrdfReport) -> dict[str, str]:
     names = {joint.name for joint in joints}
     owners = {claim.name: claim for claim in _claims("free", ROOT)} if floating else {}
     found: dict[str, str] = {}

@@ -6,13 +6,21 @@ import math
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
-from linegraph.readers.urdf.report import CLOSE, IGNORED, Report, mechanical, named, nearest, shown
+from linegraph.readers.urdf.report import (
+    CLOSE,
+    IGNORED,
+    UrdfReport,
+    mechanical,
+    named,
+    nearest,
+    shown,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from linegraph.errors import SourceError
-    from linegraph.readers.urdf.document import Element
+    from linegraph.readers.urdf.document import XmlElement
 
 LARGEST = 1e50
 """No quantity of a robot in SI units is larger; what is computed from such numbers stays finite."""
@@ -28,26 +36,26 @@ _XACRO = ("${", "$(")
 _RUN_XACRO = "is a xacro expression; run xacro first and give its output"
 
 
-class Part(NamedTuple):
+class XmlPart(NamedTuple):
     """An element and what it belongs to.
 
     Attributes:
         thing: how messages call its owner, e.g. ``joint "elbow"``.
     """
 
-    report: Report
+    report: UrdfReport
     thing: str
-    element: Element
+    element: XmlElement
 
     def fail(self, problem: str) -> SourceError:
         """The error that says this about the element; the caller raises it."""
         return self.report.error(self.element.line, self.thing, problem)
 
     def warn(self, text: str, sort: str = "") -> None:
-        """Note something about the element; `sort` is as of `Report.warn`."""
+        """Note something about the element; `sort` is as of `UrdfReport.warn`."""
         self.report.warn(self.element.line, self.thing, text, sort)
 
-    def child(self, tag: str) -> Part | None:
+    def child(self, tag: str) -> XmlPart | None:
         """The child of this tag, if there is one.
 
         Raises:
@@ -58,9 +66,9 @@ class Part(NamedTuple):
             first, second = found[:2]
             problem = f"has two <{tag}> (the first on line {first.line}); one of them must go"
             raise self.report.error(second.line, self.thing, problem)
-        return Part(self.report, self.thing, found[0]) if found else None
+        return XmlPart(self.report, self.thing, found[0]) if found else None
 
-    def need(self, tag: str) -> Part:
+    def need(self, tag: str) -> XmlPart:
         """The child of this tag.
 
         Raises:
@@ -154,14 +162,14 @@ class Part(NamedTuple):
                 self.warn(f"{where} is not known and ignored{hint}")
 
 
-def named_part(report: Report, element: Element) -> tuple[str, Part]:
+def named_part(report: UrdfReport, element: XmlElement) -> tuple[str, XmlPart]:
     """The name of a link or a joint, and the part under that name.
 
     Raises:
         SourceError: the name is missing, blank or cannot be printed.
     """
-    name = Part(report, f"<{element.tag}>", element).word("name")
-    part = Part(report, named(element.tag, name), element)
+    name = XmlPart(report, f"<{element.tag}>", element).word("name")
+    part = XmlPart(report, named(element.tag, name), element)
     if not name.strip():
         raise part.fail("the name is blank")
     for character in name:

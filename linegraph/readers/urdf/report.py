@@ -59,7 +59,7 @@ class Warned(NamedTuple):
     sort: str
 
 
-class Report:
+class UrdfReport:
     """Collects the warnings of one file and places its errors.
 
     Args:

@@ -5,17 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from linegraph.components.body import MASS_CENTER
-from linegraph.readers.urdf.joints import Joint
-from linegraph.readers.urdf.links import Link
+from linegraph.readers.urdf.joints import UrdfJoint
+from linegraph.readers.urdf.links import UrdfLink
 from linegraph.readers.urdf.names import renamed
-from linegraph.readers.urdf.report import Report, named, nearest, shown
+from linegraph.readers.urdf.report import UrdfReport, named, nearest, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from linegraph.errors import SourceError
 
-Named = TypeVar("Named", Link, Joint)
+Named = TypeVar("Named", UrdfLink, UrdfJoint)
 _LISTED = 8
 
 
@@ -28,13 +28,17 @@ class Tree(NamedTuple):
         walk: the joints depth first from the root, those of one link in the order of the file.
     """
 
-    root: Link
-    links: Mapping[str, Link]
-    walk: tuple[Joint, ...]
+    root: UrdfLink
+    links: Mapping[str, UrdfLink]
+    walk: tuple[UrdfJoint, ...]
 
 
 def tree_of(
-    links: Sequence[Link], joints: Sequence[Joint], line: int, floating: bool, report: Report
+    links: Sequence[UrdfLink],
+    joints: Sequence[UrdfJoint],
+    line: int,
+    floating: bool,
+    report: UrdfReport,
 ) -> Tree:
     """Connect links by joints.
 
@@ -68,7 +72,7 @@ def tree_of(
     return Tree(roots[0], by_name, walk)
 
 
-def _require_unique(kind: str, found: Sequence[Named], report: Report) -> None:
+def _require_unique(kind: str, found: Sequence[Named], report: UrdfReport) -> None:
     names: dict[str, Named] = {}
     for one in found:
         first = names.setdefault(one.name, one)
@@ -78,10 +82,10 @@ def _require_unique(kind: str, found: Sequence[Named], report: Report) -> None:
 
 
 def _carriers(
-    links: Mapping[str, Link], joints: Sequence[Joint], report: Report
-) -> dict[str, Joint]:
+    links: Mapping[str, UrdfLink], joints: Sequence[UrdfJoint], report: UrdfReport
+) -> dict[str, UrdfJoint]:
     """The joint that carries each link."""
-    carriers: dict[str, Joint] = {}
+    carriers: dict[str, UrdfJoint] = {}
     for joint in joints:
         who = named("joint", joint.name)
         for role, name, line in (
@@ -103,7 +107,7 @@ def _carriers(
     return carriers
 
 
-def _several_roots(roots: Sequence[Link], report: Report) -> SourceError:
+def _several_roots(roots: Sequence[UrdfLink], report: UrdfReport) -> SourceError:
     listed = [f"{_quoted(link.name)} (line {link.line})" for link in roots[:_LISTED]]
     more = "" if len(roots) <= _LISTED else f" and {len(roots) - _LISTED} more"
     problem = (
@@ -116,13 +120,13 @@ def _several_roots(roots: Sequence[Link], report: Report) -> SourceError:
     return report.error(roots[1].line, named("link", roots[1].name), problem)
 
 
-def _depth_first(root: str, joints: Sequence[Joint]) -> tuple[Joint, ...]:
-    beyond: dict[str, list[Joint]] = {}
+def _depth_first(root: str, joints: Sequence[UrdfJoint]) -> tuple[UrdfJoint, ...]:
+    beyond: dict[str, list[UrdfJoint]] = {}
     for joint in joints:
         beyond.setdefault(joint.parent, []).append(joint)
-    walk: list[Joint] = []
+    walk: list[UrdfJoint] = []
     # not recursive: a chain may be longer than Python's stack
-    pending: list[Iterator[Joint]] = [iter(beyond.get(root, ()))]
+    pending: list[Iterator[UrdfJoint]] = [iter(beyond.get(root, ()))]
     while pending:
         for joint in pending[-1]:
             walk.append(joint)
@@ -133,9 +137,9 @@ def _depth_first(root: str, joints: Sequence[Joint]) -> tuple[Joint, ...]:
     return tuple(walk)
 
 
-def _circle(start: Joint, carriers: Mapping[str, Joint], report: Report) -> SourceError:
+def _circle(start: UrdfJoint, carriers: Mapping[str, UrdfJoint], report: UrdfReport) -> SourceError:
     """The error for joints that no root reaches: from there toward the root, the way closes."""
-    seen: dict[str, Joint] = {}
+    seen: dict[str, UrdfJoint] = {}
     joint = start
     while joint.name not in seen:
         seen[joint.name] = joint
@@ -148,7 +152,9 @@ def _circle(start: Joint, carriers: Mapping[str, Joint], report: Report) -> Sour
     return report.error(first.line, named("joint", first.name), problem)
 
 
-def _check_vertices(links: Sequence[Link], joints: Sequence[Joint], report: Report) -> None:
+def _check_vertices(
+    links: Sequence[UrdfLink], joints: Sequence[UrdfJoint], report: UrdfReport
+) -> None:
     """Names of the system graph's vertices are joined by dots, so names with dots can collide."""
     taken: dict[str, str] = {}
 
@@ -166,7 +172,9 @@ def _check_vertices(links: Sequence[Link], joints: Sequence[Joint], report: Repo
         take(f"{joint.parent}.{joint.name}", joint.line, named("joint", joint.name))
 
 
-def _check_edges(links: Sequence[Link], joints: Sequence[Joint], report: Report) -> None:
+def _check_edges(
+    links: Sequence[UrdfLink], joints: Sequence[UrdfJoint], report: UrdfReport
+) -> None:
     """A joint's edge has the joint's name; bodies' own edges have a slash in theirs."""
     owners = {f"{link.name}/{edge}": link for link in links for edge in ("inertia", "arm")}
     arms = {f"{joint.parent}/arm.{joint.name}" for joint in joints}

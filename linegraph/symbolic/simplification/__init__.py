@@ -24,10 +24,10 @@ from linegraph.algebra.differentiation import Replay
 from linegraph.algebra.sympy_scalars import to_sympy
 from linegraph.errors import ModelError
 from linegraph.symbolic.simplification.angles import fewest, merged, spread
-from linegraph.symbolic.simplification.factoring import Writer, in_decimals
+from linegraph.symbolic.simplification.factoring import SympyWriter, in_decimals
 from linegraph.symbolic.simplification.memory import Memory
 from linegraph.symbolic.simplification.polynomial import Ring, Swollen
-from linegraph.symbolic.simplification.proof import EXACT, INEXACT, Point
+from linegraph.symbolic.simplification.proof import EXACT, INEXACT, SamplePoint
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -100,8 +100,8 @@ class Simplifier:
         for unit in units:
             self._ring.normalise(unit)
         self._replay = Replay(self._ring, self._ring.of_symbol)
-        self._points = [Point(self._ring, self._names, seed, units) for seed in range(POINTS)]
-        self._writer = Writer(self._ring, self._named, self._inner)
+        self._points = [SamplePoint(self._ring, self._names, seed, units) for seed in range(POINTS)]
+        self._writer = SympyWriter(self._ring, self._named, self._inner)
         self._written: dict[Any, Expr] = {}
 
     def __call__(self, x: Scalar, what: str = "expression") -> Expr:
@@ -147,7 +147,7 @@ class Simplifier:
         return self._ring
 
     @property
-    def points(self) -> list[Point]:
+    def points(self) -> list[SamplePoint]:
         """Where forms are compared."""
         return self._points
 

@@ -46,7 +46,7 @@ DIGITS = 12
 """Sums with floats are proportional if their coefficients agree in so many digits."""
 
 
-class Factor(NamedTuple):
+class CommonFactor(NamedTuple):
     """What terms share: a generator of the ring (`kernel` empty), or a sum of terms."""
 
     place: int
@@ -57,10 +57,10 @@ class Term(NamedTuple):
     """A number times powers of factors, ascending by place."""
 
     coefficient: Number
-    factors: tuple[tuple[Factor, int], ...]
+    factors: tuple[tuple[CommonFactor, int], ...]
 
 
-class Writer:
+class SympyWriter:
     """Writes the terms of a ring as sympy expressions.
 
     Args:
@@ -151,7 +151,7 @@ class Writer:
         parts = [n * self._inner(dict(self.ring.angles[angle])) for angle, n in harmonic]
         return sympy.Add(*parts)
 
-    def _factor(self, factor: Factor) -> Expr:
+    def _factor(self, factor: CommonFactor) -> Expr:
         if factor.kernel:
             return self.nested(self._terms(dict(factor.kernel)))
         return self.generator(factor.place)
@@ -189,7 +189,7 @@ class Writer:
 
     def _terms(self, terms: Terms) -> list[Term]:
         return [
-            Term(k, tuple((Factor(place, ()), e) for place, e in self.ring.exponents(term)))
+            Term(k, tuple((CommonFactor(place, ()), e) for place, e in self.ring.exponents(term)))
             for term, k in sorted(terms.items())
         ]
 
@@ -216,7 +216,7 @@ class Writer:
             outside = [k * reciprocal(own) for _, _, _, k in members]
             scale = _scale(inner.values()) * _sign(inner.values(), outside)
             terms = {t - outer: near(x * reciprocal(scale)) for t, x in sorted(inner.items())}
-            kernel = Factor(-1, tuple(terms.items()))
+            kernel = CommonFactor(-1, tuple(terms.items()))
             for varying, outer, _, k in members:
                 times = near(k * reciprocal(own) * scale)
                 (own_term,) = self._terms({varying + outer: times})
@@ -264,14 +264,14 @@ class Writer:
             return []
         return most
 
-    def _most_shared(self, terms: Sequence[Term]) -> tuple[Factor, int] | None:
+    def _most_shared(self, terms: Sequence[Term]) -> tuple[CommonFactor, int] | None:
         """The power that most terms have; of equals a sum, then what varies, then the first."""
-        counts: dict[tuple[Factor, int], int] = {}
+        counts: dict[tuple[CommonFactor, int], int] = {}
         for term in terms:
             for power in term.factors:
                 counts[power] = counts.get(power, 0) + 1
 
-        def rank(power: tuple[Factor, int]) -> tuple[Any, ...]:
+        def rank(power: tuple[CommonFactor, int]) -> tuple[Any, ...]:
             factor, exponent = power
             varies = factor.kernel or not self.constant(factor.place)
             return -counts[power], not factor.kernel, not varies, factor, exponent
@@ -342,7 +342,7 @@ def _denominator(numbers: Iterable[Number]) -> int:
     return reduce(lambda a, b: a * b // gcd(a, b), exact, 1)
 
 
-def _common(terms: Sequence[Term]) -> tuple[tuple[Factor, int], ...]:
+def _common(terms: Sequence[Term]) -> tuple[tuple[CommonFactor, int], ...]:
     """The factors of all terms; negative powers only if all have them."""
     least = dict(terms[0].factors)
     for term in terms[1:]:
@@ -352,7 +352,7 @@ def _common(terms: Sequence[Term]) -> tuple[tuple[Factor, int], ...]:
     return tuple(least.items())
 
 
-def _irreducible(terms: Sequence[Term], factor: Factor) -> bool:
+def _irreducible(terms: Sequence[Term], factor: CommonFactor) -> bool:
     """Whether a sum without common factors is A x + B with A or B of one term: then it is no product."""
     exponents = [dict(term.factors).get(factor, 0) for term in terms]
     having = sum(e != 0 for e in exponents)
@@ -385,7 +385,7 @@ def _sign(inside: Iterable[Number], outside: Iterable[Number]) -> int:
     return -1 if turned < (within + without, within) else 1
 
 
-def _divided(term: Term, k: Number, common: tuple[tuple[Factor, int], ...]) -> Term:
+def _divided(term: Term, k: Number, common: tuple[tuple[CommonFactor, int], ...]) -> Term:
     least = dict(common)
     factors = [(f, e - least.get(f, 0)) for f, e in term.factors]
     coefficient = plain(term.coefficient * reciprocal(k))

@@ -44,7 +44,7 @@ class Precise:
         self.context.dps = DIGITS
 
     def symbol(self, argument: str, place: int | str | None = None) -> Scalar:
-        """There are none here; a `Point` has them."""
+        """There are none here; a `SamplePoint` has them."""
         raise KeyError(argument, place)
 
     def sin(self, x: Scalar) -> Scalar:
@@ -66,7 +66,7 @@ class Precise:
         return getattr(self.context, OWN.get(name, name))(*x)
 
 
-class Point:
+class SamplePoint:
     """Random values of all symbols, and what expressions are worth there.
 
     Args:

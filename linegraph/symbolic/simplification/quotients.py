@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from linegraph.symbolic.simplification.numbers import Terms
-    from linegraph.symbolic.simplification.proof import Point
+    from linegraph.symbolic.simplification.proof import SamplePoint
 
 ZERO = 1e-25
 """What is left of numbers with fifty digits, beside the terms of its sum, where it is zero ..."""
@@ -66,7 +66,7 @@ class Quotients:
         (True, True)
     """
 
-    def __init__(self, ring: Ring, point: Point) -> None:
+    def __init__(self, ring: Ring, point: SamplePoint) -> None:
         """Nothing is solved yet."""
         self._ring = ring
         self._point = point

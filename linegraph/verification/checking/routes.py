@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from linegraph.algebra.scalar import Scalar
-    from linegraph.dynamics.chords import Equation
+    from linegraph.dynamics.chords import ChordEquation
     from linegraph.evaluation import Function
     from linegraph.ir.program import Module
     from linegraph.kinematics.links import KinematicTree
@@ -123,7 +123,9 @@ class _State:
         chords = self.numeric.chords(self.q, self.v)
         return [float(x) for x in efforts(self.tree, self.algebra, chords, active)]
 
-    def audit_sums(self, acceleration: Vector, multipliers: Vector, rows: list[Equation]) -> Any:
+    def audit_sums(
+        self, acceleration: Vector, multipliers: Vector, rows: list[ChordEquation]
+    ) -> Any:
         """What the powers of all edges sum up to in each subspace."""
         import numpy
 

@@ -18,8 +18,8 @@ from linegraph.dynamics.reaction_rows import rows_of
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from linegraph.components.constraints.base import Row
-    from linegraph.dynamics.chords import Chords, Equation
+    from linegraph.components.constraints.base import ReactionRow
+    from linegraph.dynamics.chords import ChordEquation, Chords
     from linegraph.kinematics.links import Closure, Seat
     from linegraph.verification.golden.walk import Moved, Valued, Walk
 
@@ -37,7 +37,7 @@ class Constraints:
     walk: Walk
 
     @cached_property
-    def _rows(self) -> dict[str, tuple[Row, ...]]:
+    def _rows(self) -> dict[str, tuple[ReactionRow, ...]]:
         """The rows of every chord, as jets along the motion."""
         jets, resolve = Jets(self.walk.numeric.algebra), self.walk.numeric.resolve
         found = {}
@@ -62,7 +62,7 @@ class Constraints:
         x, dx, _ = self.walk.parts(found)
         return x[:, 0], self.walk.np.abs(dx[:, :-1]).sum(axis=1)
 
-    def _holonomic(self) -> Iterator[Row]:
+    def _holonomic(self) -> Iterator[ReactionRow]:
         for e in equations(self.walk.tree):
             if e.holonomic:
                 yield self._rows[e.component][e.place]
@@ -77,7 +77,7 @@ class Constraints:
         rates, bias = (np.array([x[k] for x in found], number) for k in (1, 2))
         return J, rates, bias
 
-    def _derived(self, k: int, equation: Equation) -> tuple[Array, float, float]:
+    def _derived(self, k: int, equation: ChordEquation) -> tuple[Array, float, float]:
         """A row of J, its rate and its γ."""
         name = equation.component
         if any(relation.name == name for relation in self.walk.tree.relations):
@@ -95,7 +95,7 @@ class Constraints:
     def _relations(self) -> Chords:
         return self.walk.numeric.chords(self.walk.q, self.walk.v)
 
-    def _slipping(self, closure: Closure, row: Row) -> tuple[Array, float, float]:
+    def _slipping(self, closure: Closure, row: ReactionRow) -> tuple[Array, float, float]:
         """A row that only velocities obey: ``f . u + m . w - b`` by direction, and less its derivative."""
         np = self.walk.np
         tail, head = self._seated(closure.tail), self._seated(closure.head)
@@ -129,7 +129,7 @@ class Constraints:
         size = np.maximum(largest, np.array(apart).reshape(-1))
         return J, np.repeat(size, len(self.walk.v)).reshape(J.shape)
 
-    def _apart(self, equation: Equation) -> float:
+    def _apart(self, equation: ChordEquation) -> float:
         """How far unit velocities would move a row if its ends did not move together."""
         np = self.walk.np
         closure = next(

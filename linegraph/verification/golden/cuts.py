@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from linegraph.model.system import System
     from linegraph.numeric.derived import Derived
     from linegraph.verification.golden.bodies import Bodies
-    from linegraph.verification.golden.kinematics import Kinematics
+    from linegraph.verification.golden.kinematics import KinematicReference
     from linegraph.verification.golden.walk import Moved, Valued, Walk
 
     Array = Any
@@ -90,7 +90,7 @@ class Pull(NamedTuple):
         return self._replace(force=-self.force, torque=-self.torque)
 
 
-class Place(NamedTuple):
+class GroundPlace(NamedTuple):
     """A point and its axes in motion, in ground axes, accelerations at the v̇ given.
 
     Attributes:
@@ -128,7 +128,7 @@ class Cuts:
     derivation: Derived
     walk: Walk
     bodies: Bodies
-    kinematics: Kinematics
+    kinematics: KinematicReference
     a: Valued
     lam: Valued
 
@@ -148,7 +148,7 @@ class Cuts:
 
     # -- places
 
-    def place(self, terminal: str) -> Place:
+    def place(self, terminal: str) -> GroundPlace:
         """How a terminal, or a mass centre, moves."""
         np, (a, of_a), v = self.walk.np, self.a, absolute(self.walk.v)
         at = self.kinematics.frame(terminal)
@@ -156,7 +156,7 @@ class Cuts:
         u, w = (np.linalg.norm(x, axis=0) for x in (linear, angular))
         fast = float(w @ v)
         pull, spin = at.pull + linear @ a, at.spin + angular @ a
-        return Place(
+        return GroundPlace(
             at.rotation,
             at.origin,
             at.linear[:, -1],

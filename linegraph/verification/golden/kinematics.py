@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Kinematics:
+class KinematicReference:
     """Frames of a model, and all of it, at a state.
 
     Attributes:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     Array = Any
 
 
-class _Dynamics(NamedTuple):
+class _ReferenceDynamics(NamedTuple):
     """M and h in coordinates without constraints; J and the rate of the frame's velocity there.
 
     Each is followed by what it is made of.
@@ -43,7 +43,7 @@ class Operational:
     rows: int
 
     @cached_property
-    def _dynamics(self) -> _Dynamics:
+    def _dynamics(self) -> _ReferenceDynamics:
         np, point = self.point.walk.np, self.point
         jacobian, rate = (
             (value[: self.rows], size[: self.rows])
@@ -53,12 +53,12 @@ class Operational:
             )
         )
         if not point.walk.tree.closed:
-            return _Dynamics(point.bodies.mass_matrix, point.bodies.bias, jacobian, rate)
+            return _ReferenceDynamics(point.bodies.mass_matrix, point.bodies.bias, jacobian, rate)
         (T, of_T), (rest, of_rest) = point.reduction
         (J, of_J), (dot, of_dot) = jacobian, rate
         projected = J @ T, of_J @ of_T
         whole = dot + J @ rest, of_dot + np.abs(J) @ of_rest
-        return _Dynamics(*point.reduced, projected, whole)
+        return _ReferenceDynamics(*point.reduced, projected, whole)
 
     @cached_property
     def _inverse(self) -> Array:

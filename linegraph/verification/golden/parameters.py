@@ -29,7 +29,7 @@ from linegraph.verification.golden.bodies import NOISE, Heavy
 
 if TYPE_CHECKING:
     from linegraph.components.forces import Element
-    from linegraph.dynamics.network_state import Exchange, Motion
+    from linegraph.dynamics.network_state import EdgeMotion, Exchange
     from linegraph.identification.standard_parameters import Axis
     from linegraph.verification.golden.bodies import Bodies
     from linegraph.verification.golden.walk import Moved, Valued, Walk
@@ -238,7 +238,7 @@ class Parameters:
 def _moving(at: Exchange, port: str, w: float) -> Exchange:
     """The networks with one edge in mechanics moving at w, all others and all states at rest."""
 
-    def motion(name: str) -> Motion:
+    def motion(name: str) -> EdgeMotion:
         return replace(at.motion(name), w=w if name == port else 0.0)
 
     return replace(at, motion=motion, v=[0.0] * len(at.v), _motions={})

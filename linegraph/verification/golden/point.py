@@ -17,7 +17,7 @@ from linegraph.verification.golden.bodies import NOISE, Bodies
 from linegraph.verification.golden.constraints import Constraints
 from linegraph.verification.golden.cuts import Cuts
 from linegraph.verification.golden.edges import Edges
-from linegraph.verification.golden.kinematics import Kinematics
+from linegraph.verification.golden.kinematics import KinematicReference
 from linegraph.verification.golden.outputs import Outputs
 from linegraph.verification.golden.parameters import Parameters
 from linegraph.verification.golden.walk import Walk
@@ -127,9 +127,9 @@ class Point:
         return {}
 
     @cached_property
-    def kinematics(self) -> Kinematics:
+    def kinematics(self) -> KinematicReference:
         """Frames, and the whole."""
-        return Kinematics(self.walk, self.bodies)
+        return KinematicReference(self.walk, self.bodies)
 
     @cached_property
     def parameters(self) -> Parameters:
