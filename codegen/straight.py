@@ -1,7 +1,6 @@
 """Straight-line programs in C: lines in the order of `order`, in parts as `parts` cuts them.
 
-The same lines serve two kinds of numbers: doubles, and registers that hold one number of each of
-several states (`codegen.batch`).
+The same lines serve doubles, and registers that hold a number of each of several states (`codegen.batch`).
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ SHARED = ("p", "c", "t")
 
 
 @dataclass(frozen=True)
-class NumberKind:
+class Numbers:
     """What the numbers of a function are.
 
     Attributes:
@@ -58,7 +57,7 @@ def function(module: Module, name: str) -> str:
 
 
 def define(
-    module: Module, program: Program, statuses: dict[str, dict[int, str]], kind: NumberKind
+    module: Module, program: Program, statuses: dict[str, dict[int, str]], kind: Numbers
 ) -> list[Definition]:
     """A function, after the parts it calls if it is long."""
     return _Writer(module, program, statuses, kind).definitions()
@@ -72,7 +71,7 @@ class _Writer:
         module: Module,
         program: Program,
         statuses: dict[str, dict[int, str]],
-        kind: NumberKind,
+        kind: Numbers,
     ) -> None:
         self.module, self.program, self.statuses, self.kind = module, program, statuses, kind
         self.prefix, self.macro = module.name, module.name.upper()
@@ -338,10 +337,8 @@ class _Writer:
 
     def spread(self, x: Operand) -> str:
         """An operand as a register."""
-        if isinstance(x, Node):
-            text = self.printer.text(x)
-            return text if x.index in self.wide else self.equal(text)
-        return self.equal(number(x))
+        text = self.printer.text(x) if isinstance(x, Node) else number(x)
+        return text if isinstance(x, Node) and x.index in self.wide else self.equal(text)
 
     def equal(self, text: str) -> str:
         """A number as a register that has it in all lanes."""
@@ -379,7 +376,7 @@ def _called(call: str, may_fail: bool, ok: str) -> list[str]:
     ]
 
 
-def _notation(module: Module, kind: NumberKind) -> Syntax:
+def _notation(module: Module, kind: Numbers) -> Syntax:
     """How C writes expressions and checks."""
     named = {key: constant for key, (constant, _) in failures.constants(module).items()}
 

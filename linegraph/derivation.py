@@ -192,16 +192,14 @@ class Derivation(Derived, Displayed):
         """
         return self.symbolic.equations()
 
-    @cached_property
+    @property
     def state_space(self) -> StateSpace:
         """A, B, C, D of a system that is linear, in letters.
 
         Raises:
             ModelError: it is not linear.
         """
-        from linegraph.symbolic.linear_systems import state_space_of
-
-        return state_space_of(self.symbolic)
+        return self.symbolic.state_space
 
     def linearise(self, at: Mapping[Any, Any] | None = None) -> StateSpace:
         """A, B, C, D for small deviations from an equilibrium or a steady motion, in letters.
@@ -220,9 +218,7 @@ class Derivation(Derived, Displayed):
             ModelError: v̇ is not 0 there, constraints do not hold or the position is singular, the time stands
                 in the equations, or they have too many terms.
         """
-        from linegraph.symbolic.linear_systems import linearise
-
-        return linearise(self.symbolic, at or {})
+        return self.symbolic.linearise(at)
 
     linearize = linearise
 

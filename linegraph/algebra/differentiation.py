@@ -211,7 +211,7 @@ class TermSizes:
     Example:
         >>> dag = Dag()
         >>> x, y = dag.symbol("x"), dag.symbol("y")
-        >>> difference = Sizes(Calculus(dag))(x - y)
+        >>> difference = TermSizes(Calculus(dag))(x - y)
         >>> from linegraph.algebra.protocol import Floats
         >>> Replay(Floats(), {("x", None): 3.0, ("y", None): -3.0}.__getitem__)(difference)
         6.0

@@ -4,9 +4,8 @@ Across variables follow from the circuit equations. Through variables follow fro
 by body from the leaves to the root: the joint towards ground exerts what the body's motion asks for, less
 what all its other edges exert. Masses are the model's own, whatever the equations of motion regroup.
 
-In each subspace the product of through and across variables, summed over all edges, is zero. A force that
-acts beside a mass centre is a torque there: the arm is a transformer between translation and rotation, with
-a *lever* edge in rotation from ground to the mass centre, so that the sums vanish one by one.
+In each subspace through times across, summed over all edges, is zero. A force that acts beside a mass centre
+is a torque there: its arm has a *lever* edge in rotation, from ground to the mass centre.
 """
 
 from __future__ import annotations

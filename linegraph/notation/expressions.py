@@ -37,7 +37,7 @@ def number(x: Any) -> Math:
 
     Example:
         >>> number(2.50), number(-3)
-        (Number(text='2.5', rounded=False), Sum(terms=((True, Number(text='3', rounded=False)),)))
+        (Numeral(text='2.5', rounded=False), Sum(terms=((True, Numeral(text='3', rounded=False)),)))
     """
     if x < 0:
         return negated(number(-x))

@@ -8,12 +8,12 @@ import sympy
 from sympy.physics.mechanics import dynamicsymbols
 
 if TYPE_CHECKING:
-    from linegraph.symbolic.closed_forms import ClosedForms
+    from linegraph.symbolic.equation_forms import EquationForms
 
 Expr = Any
 
 
-def to_dynamic(symbolic: ClosedForms, expression: Expr) -> Expr:
+def to_dynamic(symbolic: EquationForms, expression: Expr) -> Expr:
     """Coordinates as functions of time, rates and accelerations as their derivatives.
 
     Example:
@@ -29,7 +29,7 @@ def to_dynamic(symbolic: ClosedForms, expression: Expr) -> Expr:
     return _whole(expression).xreplace(_names(symbolic))
 
 
-def to_static(symbolic: ClosedForms, expression: Expr) -> Expr:
+def to_static(symbolic: EquationForms, expression: Expr) -> Expr:
     """Functions of time and their derivatives as symbols."""
     names = _names(symbolic)
     # the longest first: a derivative holds the function that it is of
@@ -48,7 +48,7 @@ def _whole(expression: Expr) -> Expr:
     return found.as_immutable() if isinstance(found, sympy.MatrixBase) else found
 
 
-def _names(symbolic: ClosedForms) -> dict[Expr, Expr]:
+def _names(symbolic: EquationForms) -> dict[Expr, Expr]:
     """What moves for each symbol."""
     found: dict[Expr, Expr] = {symbol: dynamicsymbols(symbol.name) for symbol in symbolic.q}
     time = dynamicsymbols._t

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from linegraph.algebra.differentiation import Symbol
-    from linegraph.symbolic.closed_forms import ClosedForms
+    from linegraph.symbolic.equation_forms import EquationForms
     from linegraph.symbolic.small_motions import EquationsOfMotion
 
 Expr = Any
 
 
-def state_space_of(symbolic: ClosedForms) -> StateSpace:
+def state_space_of(symbolic: EquationForms) -> StateSpace:
     """A, B, C, D of a linear system; its outputs are the model's, or all states where it has none.
 
     Raises:
@@ -51,7 +51,7 @@ def state_space_of(symbolic: ClosedForms) -> StateSpace:
     return found
 
 
-def linearise(symbolic: ClosedForms, at: Mapping[Any, Any]) -> StateSpace:
+def linearise(symbolic: EquationForms, at: Mapping[Any, Any]) -> StateSpace:
     """A, B, C, D for small deviations from an equilibrium or a steady motion.
 
     In a tree the states are q and v. Where loops close or wheels roll they are the independent changes of
@@ -97,7 +97,7 @@ def linearise(symbolic: ClosedForms, at: Mapping[Any, Any]) -> StateSpace:
     return _space(symbolic, state, moving=False)
 
 
-def _space(symbolic: ClosedForms, state: AtState, *, moving: bool) -> StateSpace:
+def _space(symbolic: EquationForms, state: AtState, *, moving: bool) -> StateSpace:
     """The matrices, columns of inputs apart from those of their derivatives."""
     rows = state.matrices(slopes(symbolic.motion, moving=moving), moving=moving)
     inputs, steep = _inputs(symbolic)
@@ -112,7 +112,7 @@ def _space(symbolic: ClosedForms, state: AtState, *, moving: bool) -> StateSpace
     return StateSpace(state.states, *names, A, B, C, D, E, F, symbolic.defaults)
 
 
-def _at(symbolic: ClosedForms, values: Mapping[Symbol, Expr]) -> AtState:
+def _at(symbolic: EquationForms, values: Mapping[Symbol, Expr]) -> AtState:
     """The motion at a state; parameters in its values are the model's whatever is assumed of them."""
     simplifier = symbolic.simplifier.twin()
     for symbol, e in _states(symbolic).items():
@@ -130,7 +130,7 @@ def _at(symbolic: ClosedForms, values: Mapping[Symbol, Expr]) -> AtState:
     return AtState(symbolic.motion, simplifier, symbolic.names, plain, *chosen)
 
 
-def _in_numbers(symbolic: ClosedForms, given: Mapping[Symbol, Expr]) -> dict[Symbol, Expr] | None:
+def _in_numbers(symbolic: EquationForms, given: Mapping[Symbol, Expr]) -> dict[Symbol, Expr] | None:
     """The state with the parameters' own values, what is left out as loops close there; None without."""
     derivation = symbolic.derivation
     names = {("q", k): quantity.name for k, quantity in enumerate(symbolic.tree.positions)}
@@ -158,7 +158,7 @@ def _require_no_time(motion: EquationsOfMotion, who: str) -> None:
         raise ModelError(who, problem)
 
 
-def _require_no_input(symbolic: ClosedForms) -> None:
+def _require_no_input(symbolic: EquationForms) -> None:
     """Refuse constraints that follow inputs, as the emitted function does."""
     motion = symbolic.motion
     calculus = Calculus(motion.dag)
@@ -169,7 +169,7 @@ def _require_no_input(symbolic: ClosedForms) -> None:
             )
 
 
-def _at_rest(symbolic: ClosedForms) -> dict[Symbol, Expr]:
+def _at_rest(symbolic: EquationForms) -> dict[Symbol, Expr]:
     """Every state and input at rest."""
     zero = sympy.Integer(0)
     found: dict[Symbol, Expr] = dict.fromkeys(_states(symbolic), zero)
@@ -179,7 +179,7 @@ def _at_rest(symbolic: ClosedForms) -> dict[Symbol, Expr]:
     return found
 
 
-def _given(symbolic: ClosedForms, at: Mapping[Any, Any]) -> dict[Symbol, Expr]:
+def _given(symbolic: EquationForms, at: Mapping[Any, Any]) -> dict[Symbol, Expr]:
     """What the user says."""
     symbols = {str(e): symbol for symbol, e in _states(symbolic).items()}
     found = {}
@@ -191,21 +191,21 @@ def _given(symbolic: ClosedForms, at: Mapping[Any, Any]) -> dict[Symbol, Expr]:
     return found
 
 
-def _states(symbolic: ClosedForms) -> dict[Symbol, Expr]:
+def _states(symbolic: EquationForms) -> dict[Symbol, Expr]:
     """The symbols of coordinates, velocities, inputs and unknowns of loops, and how they are written."""
     columns = {"q": symbolic.q, "v": symbolic.v, "u": symbolic.u}
     columns[LOOP] = [sympy.Symbol(name) for name in symbolic.names[LOOP]]
     return {(kind, k): x for kind, column in columns.items() for k, x in enumerate(column)}
 
 
-def _inputs(symbolic: ClosedForms) -> tuple[list[int], list[int | None]]:
+def _inputs(symbolic: EquationForms) -> tuple[list[int], list[int | None]]:
     """The inputs that are no derivatives of others, and the places of their derivatives."""
     steep = symbolic.tree.layout.slopes
     own = [k for k in range(len(symbolic.u)) if k not in steep.values()]
     return own, [steep.get(k) for k in own]
 
 
-def _independent(symbolic: ClosedForms) -> list[int]:
+def _independent(symbolic: EquationForms) -> list[int]:
     """The velocities that the emitted functions keep, if these are known."""
     chosen = symbolic.derivation.system.choices.independent
     velocities = [quantity.name for quantity in symbolic.tree.velocities]
@@ -214,10 +214,10 @@ def _independent(symbolic: ClosedForms) -> list[int]:
     return symbolic.derivation.assembled.independent if _valued(symbolic) else []
 
 
-def _rank(symbolic: ClosedForms) -> int:
+def _rank(symbolic: EquationForms) -> int:
     """How many constraints are independent anywhere, as far as that is known."""
     return symbolic.derivation.assembled.rank if _valued(symbolic) else 0
 
 
-def _valued(symbolic: ClosedForms) -> bool:
+def _valued(symbolic: EquationForms) -> bool:
     return all(p.value is not None for p in symbolic.derivation.system.parameters.values())

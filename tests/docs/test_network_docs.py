@@ -155,7 +155,7 @@ def test_the_state_space(tmp_path: Path) -> None:
     names: dict[str, Any] = {}
     exec(program.partition("symbolic = ")[0], names)
     control = pytest.importorskip("control")
-    found = derive(names["model"]).symbolic.state_space.to_control()
+    found = derive(names["model"]).state_space.to_control()
     assert isinstance(found, control.StateSpace)
     assert found.state_labels == ["v_C1"]
 

@@ -1,14 +1,20 @@
-"""The packages and how they stand on each other, drawn from their imports.
+"""The packages and how they stand on each other, drawn from their imports: docs/packages.svg.
 
-python tests/house/picture.py          writes docs/packages.svg
+python tests/house/picture.py
 """
 
 from __future__ import annotations
 
-import networkx as nx
-from house.rooms import ROOMS, ROOT, between_rooms, files, room
+import sys
+from pathlib import Path
 
-from linegraph.drawing.scene import (
+import networkx as nx
+
+sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[2])]
+
+from house.rooms import ROOMS, ROOT, between_rooms, files, room  # noqa: E402
+
+from linegraph.drawing.scene import (  # noqa: E402
     BRANCH,
     EDGE_OF_TINT,
     GREY,
@@ -23,7 +29,7 @@ from linegraph.drawing.scene import (
     Stroke,
     Text,
 )
-from linegraph.drawing.svg import svg_text
+from linegraph.drawing.svg import svg_text  # noqa: E402
 
 FILE = ROOT / "docs" / "packages.svg"
 WIDTH, HEIGHT, GAP, STEP, MARGIN = 104, 30, 14, 62, 16

@@ -10,6 +10,7 @@ import ast
 import doctest
 import importlib
 import io
+import re
 import subprocess
 import sys
 import tokenize
@@ -17,7 +18,7 @@ import types
 from typing import TYPE_CHECKING
 
 import pytest
-from house import rooms
+from house import picture, rooms
 from house.rooms import ROOT, all_imports, files, parsed, room
 
 import linegraph
@@ -450,3 +451,31 @@ def test_emitting_loads_templates_only() -> None:
         "m.prismatic('j', between=('ground', m.body('b', mass=1))); render(m)"
     )
     assert fresh(script + LOADED).strip() == "['jinja2']"
+
+
+# ---- the guide for contributors
+
+
+def walks() -> Iterator[tuple[str, str]]:
+    """File and name of each step of the walks through the code."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    part = text.split("## Three walks")[1].split("## Adding things")[0]
+    yield from re.findall(r"^\| `([\w/.]+)` \| (?:`(\w+)`)? ?\|", part, re.MULTILINE)
+
+
+def test_the_walks_lead_somewhere() -> None:
+    assert len(list(walks())) > 25
+    for file, name in walks():
+        text = (ROOT / file).read_text(encoding="utf-8")
+        assert re.search(rf"^(?:def|class) {name}\b", text, re.MULTILINE) or not name, (file, name)
+
+
+def test_the_guide_names_every_package() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    folders = {room(name) for name, path in files().items() if path.name == "__init__.py"}
+    assert [name for name in sorted(folders - {"linegraph"}) if f"`{name}`" not in text] == []
+
+
+def test_the_picture_is_that_of_the_imports() -> None:
+    """Else run ``python tests/house/picture.py``."""
+    assert picture.FILE.read_text(encoding="utf-8") == picture.svg_text(picture.scene())

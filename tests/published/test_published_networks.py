@@ -65,7 +65,7 @@ def test_rates_are_the_published_ones(system: Published) -> None:
 
 @pytest.mark.parametrize("system", LINEAR, ids=lambda system: system.name)
 def test_state_space_is_the_published_one(system: Published) -> None:
-    space = derived(system).symbolic.state_space
+    space = derived(system).state_space
     order = [space.states.index(name) for name in system.states]
     signs = sympy.diag(*system.signs)
 
@@ -88,7 +88,7 @@ def test_state_space_is_the_published_one(system: Published) -> None:
 @pytest.mark.parametrize("system", LINEAR, ids=lambda system: system.name)
 def test_transfer_functions_are_those_of_scipy(system: Published) -> None:
     """H(s) of the symbolic fraction, and of scipy's object, at a point off the axis."""
-    space = derived(system).symbolic.state_space
+    space = derived(system).state_space
     if not space.inputs or any(entry != 0 for entry in space.F):
         return
     values = {sympy.Symbol(name): x for name, x in space.defaults.items()}

@@ -111,7 +111,7 @@ def test_json_says_the_same() -> None:
     assert [joint.name for joint in other.joints] != [joint.name for joint in model.joints]
     parts = {joint.name: joint for joint in model.joints}
     assert parts == {joint.name: joint for joint in other.joints}
-    assert set(model.elements) == set(other.elements)
+    assert set(model.force_elements) == set(other.force_elements)
     assert model.bodies == other.bodies
 
 

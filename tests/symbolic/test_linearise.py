@@ -479,7 +479,7 @@ def motor_with_shaft() -> Model:
 
 
 RESPONSES: dict[str, Any] = {
-    "motor": lambda: lg.derive(motor_with_shaft()).symbolic.state_space,
+    "motor": lambda: lg.derive(motor_with_shaft()).state_space,
     "row of three": lambda: lg.derive(row(3)).linearise(),
     "pendulum of two": lambda: lg.derive(SYSTEMS["pendulum"](2)).linearise(),
     "pendulum on a cart": lambda: lg.derive(SYSTEMS["pendulum on a cart"](2)).linearise(),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.readers.modelfile.expressions import Scope
 from linegraph.readers.modelfile.fields import Field, Table
-from linegraph.readers.modelfile.kinds import WRONG, Items, NumberOrFormula, Schema, said
+from linegraph.readers.modelfile.kinds import WRONG, Items, Real, Schema, said
 
 if TYPE_CHECKING:
     from linegraph.readers.modelfile.expressions import Names
@@ -34,7 +34,7 @@ class Interval:
         return _PAIR.schema()
 
 
-_PAIR = Items(NumberOrFormula(Scope.NUMBERS, folded=True), 2, "a list [low, high]")
+_PAIR = Items(Real(Scope.NUMBERS, folded=True), 2, "a list [low, high]")
 
 
 @dataclass(frozen=True)

@@ -53,7 +53,7 @@ def said(value: Any) -> str:
 
 
 @dataclass(frozen=True)
-class NumberOrFormula:
+class Real:
     """A number, or an expression in quotes.
 
     Attributes:
@@ -133,7 +133,7 @@ class Items:
 
 def vector(scope: Scope = Scope.PARAMETERS, folded: bool = False) -> Items:
     """Three numbers."""
-    return Items(NumberOrFormula(scope, folded=folded), 3, "a list of three numbers")
+    return Items(Real(scope, folded=folded), 3, "a list of three numbers")
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ class Direction:
 
 
 @dataclass(frozen=True)
-class TextKind:
+class FreeText:
     """A label or a paragraph.
 
     Attributes:

@@ -18,11 +18,11 @@ from linegraph.readers.modelfile.kinds import (
     WRONG,
     Ends,
     Flag,
+    FreeText,
     Items,
     JointName,
-    NumberOrFormula,
+    Real,
     Schema,
-    TextKind,
     Word,
     said,
 )
@@ -173,8 +173,8 @@ def _kind_of(kind: type[Component], key: str, annotation: str) -> Kind:
         return _PLACED[key]
     if kind.kind == "element":
         names = ("x", "y", "s")
-        return LawText(names) if key == "law" else NumberOrFormula(Scope.NETWORK, own=names)
-    number = NumberOrFormula(Scope.NETWORK, own=own)
+        return LawText(names) if key == "law" else Real(Scope.NETWORK, own=names)
+    number = Real(Scope.NETWORK, own=own)
     if annotation == "tuple[tuple[Any, ...], ...]":
         return Several(Several(number, "a row of the matrix, a list,"), "a matrix, a list of rows,")
     if annotation.startswith("tuple[Any, ...]"):
@@ -184,9 +184,9 @@ def _kind_of(kind: type[Component], key: str, annotation: str) -> Kind:
 
 VARIABLE = Table(
     {
-        "name": Field(TextKind(), "what it is called", True),
-        "unit": Field(TextKind(), "its unit, such as Pa or m^3/s", True),
-        "letter": Field(TextKind(8), "what names of states begin with", True),
+        "name": Field(FreeText(), "what it is called", True),
+        "unit": Field(FreeText(), "its unit, such as Pa or m^3/s", True),
+        "letter": Field(FreeText(8), "what names of states begin with", True),
     }
 )
 DOMAIN = Table(

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from linegraph.readers.modelfile.expressions import Scope
-from linegraph.readers.modelfile.kinds import NumberOrFormula
+from linegraph.readers.modelfile.kinds import Real
 from linegraph.readers.modelfile.tables import FLAT, HEAD, INPUT, OUTPUT, PARAMETER, TYPES
 
 PATH = Path(__file__).with_name("schema.json")
@@ -24,9 +24,9 @@ def schema() -> dict[str, Any]:
     properties: dict[str, Any] = {
         key: {"description": entry.about, **entry.kind.schema()} for key, entry in HEAD.items()
     }
-    parameter = {"anyOf": [*NumberOrFormula().schema()["anyOf"], PARAMETER.schema()]}
+    parameter = {"anyOf": [*Real().schema()["anyOf"], PARAMETER.schema()]}
     properties["parameters"] = _named(parameter, "numbers that stay symbols")
-    output = {"anyOf": [*NumberOrFormula(Scope.OUTPUT).schema()["anyOf"], OUTPUT.schema()]}
+    output = {"anyOf": [*Real(Scope.OUTPUT).schema()["anyOf"], OUTPUT.schema()]}
     properties["outputs"] = _named(output, "what the emitted code returns by name")
     properties["inputs"] = _named(INPUT.schema(), "numbers known at run time")
     properties |= {key: table.schema() for key, table in FLAT.items() if table is not None}

@@ -11,7 +11,6 @@ from dataclasses import MISSING, dataclass, fields, replace
 from inspect import cleandoc
 from typing import TYPE_CHECKING, Any
 
-from linegraph.components.body import symmetric
 from linegraph.components.constraints import CONSTRAINTS, Constraint
 from linegraph.components.forces import ELEMENTS, Element
 from linegraph.components.forces.load import BODY, WORLD
@@ -27,22 +26,22 @@ from linegraph.readers.modelfile.kinds import (
     Direction,
     Ends,
     Flag,
+    FreeText,
     Items,
     JointName,
     Kind,
     Label,
-    NumberOrFormula,
+    Real,
     Schema,
     Terminal,
-    TextKind,
     Word,
     said,
     vector,
 )
+from linegraph.readers.modelfile.mechanics import InertiaTable, Turning
 from linegraph.readers.modelfile.networks import DOMAIN, component_table
 from linegraph.readers.modelfile.report import shown
 from linegraph.readers.modelfile.timed import (
-    BY_INPUT,
     Coordinates,
     Listed,
     PrescribedMotion,
@@ -51,52 +50,141 @@ from linegraph.readers.modelfile.timed import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from linegraph.readers.modelfile.expressions import Names
     from linegraph.readers.modelfile.report import Spot
 
-ENTRIES = ("xx", "xy", "xz", "yy", "yz", "zz")
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
 
 _ATTRIBUTE = re.compile(r"^ {4}(\w+(?:, \w+)*): (.*(?:\n {8,}\S.*)*)", re.MULTILINE)
 
 
-@dataclass(frozen=True)
-class InertiaTable:
-    """Entries by name, three moments, or a 3 x 3 matrix."""
+_UNIT = Field(FreeText(), "its unit, for readers")
+_ABOUT = Field(FreeText(), "its meaning, for readers")
 
-    def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """Entries by name."""
-        if isinstance(value, dict):
-            return INERTIA.read(value, spot, names)
-        if not isinstance(value, list) or len(value) != 3:
-            spot.error(f"{_INERTIAS} is wanted, not {said(value)}")
-            return WRONG
-        if not any(isinstance(row, list) for row in value):
-            found = Items(NumberOrFormula(least=0), 3, "").read(value, spot, names)
-            return WRONG if found is WRONG else dict(zip(("xx", "yy", "zz"), found, strict=True))
-        return self._matrix(value, spot, names)
+PARAMETER = Table(
+    {
+        "value": Field(Real(), "a number, or an expression of earlier parameters", True),
+        "unit": _UNIT,
+        "about": _ABOUT,
+    }
+)
+INPUT = Table({"unit": _UNIT, "about": _ABOUT})
 
-    def _matrix(self, value: list[Any], spot: Spot, names: Names) -> Any:
-        rows = [
-            vector().read(row, spot.at(i) if isinstance(row, list) else spot, names)
-            for i, row in enumerate(value)
-        ]
-        if any(row is WRONG for row in rows):
-            return WRONG
-        found = symmetric(rows)
-        if found is None:
-            spot.error("is not symmetric")
-            return WRONG
-        return dict(zip(ENTRIES, found, strict=True))
+FRAME = Table(
+    {
+        "at": Field(vector(), "origin in the body's frame (m)"),
+        "rpy": Field(vector(folded=True), "turns about the body's fixed x, y, z (rad)"),
+        "axis": Field(Direction(), "direction to turn about"),
+        "angle": Field(Real(folded=True), "angle of the turn about axis (rad)"),
+    },
+    exclusive=(("rpy", "axis"), ("rpy", "angle")),
+)
+BASEMENT = Table(
+    {
+        "position": Field(PrescribedMotion(3), 'three expressions of t (m), or "input"'),
+        "rotation": Field(Turning(), 'a turn as a function of t, or "input"'),
+    },
+    about='a massless body called "basement" in prescribed motion, for others to stand on',
+)
+GRAVITY = Table(
+    {"acceleration": Field(vector(), "of free fall, in ground axes (m/s^2)", True)},
+)
+BODY_TABLE = Table(
+    {
+        "mass": Field(Real(least=0), "kg; 0 if left out"),
+        "mass_center": Field(vector(), "in the body's frame (m); its origin if left out"),
+        "inertia": Field(
+            InertiaTable(), "kg m^2, in body axes, about the mass centre; 0 if left out"
+        ),
+        "first_moment": Field(
+            vector(),
+            "mass times mass centre (kg m), instead of mass_center; the inertia is then about the origin",
+        ),
+        "frame": Field(Named(FRAME), "frames of this body by name"),
+    },
+    exclusive=(("mass_center", "first_moment"),),
+)
+FOLLOWS = Table(
+    {
+        "joint": Field(JointName(), "the joint it follows", True),
+        "ratio": Field(Real(folded=True), "its coordinate over that of the other; 1 if left out"),
+        "offset": Field(
+            Real(folded=True), "its coordinate where that of the other is 0 (rad or m)"
+        ),
+    }
+)
+LOAD = Table(
+    {
+        "at": Field(Terminal(), "where it acts: body or body.frame", True),
+        "force": Field(vector(Scope.STATE), "N"),
+        "torque": Field(vector(Scope.STATE), "N m"),
+        "axes": Field(Word((WORLD, BODY)), '"world" (default) or "body": axes of what is given'),
+    },
+    needs=(("force", "torque"),),
+)
+ROTOR = Table(
+    {
+        "joint": Field(JointName(), "the revolute joint it drives", True),
+        "inertia": Field(Real(least=0), "about the joint's axis (kg m^2)", True),
+        "ratio": Field(Real(), "turns of the rotor for one of the joint; 1 if left out"),
+    }
+)
+RELATION = Table(
+    {
+        "rate": Field(
+            Real(Scope.STATE),
+            "an expression that is zero, linear in the rates der(...)",
+            True,
+        )
+    },
+    about="a constraint on velocities: a(q) v = b(q, t)",
+)
+OUTPUT = Table(
+    {
+        "value": Field(Real(Scope.OUTPUT), "an expression", True),
+        "unit": _UNIT,
+        "about": _ABOUT,
+    }
+)
+FORMULATION = Table(
+    {
+        "tree": Field(
+            Listed("joints, or inertia edges body/inertia,"), "edges that must be branches"
+        ),
+        "coordinates": Field(
+            Coordinates(),
+            '"joint" (default), "absolute", "absolute-angle" or "automatic"; or one for each body named',
+        ),
+        "independent": Field(
+            Listed("coordinates"),
+            "what a closed mechanism is reduced to; chosen automatically if left out",
+        ),
+        "baumgarte": Field(
+            Items(Real(least=0), 2, "a list [alpha, beta]"),
+            "stabilises constraints in forward_dynamics: -2 alpha rate - beta^2 error (1/s)",
+        ),
+        "reactions": Field(
+            Word(REACTION_AXES), 'axes of reactions: "head" (default), "tail" or "ground"'
+        ),
+    },
+    about="choices of the formulation: none of them changes the physics",
+)
+HEAD = {
+    "name": Field(Label(), "prefix of everything emitted; the file's own name if left out"),
+    "description": Field(FreeText(2000, lines=True), "one paragraph for the head of emitted files"),
+}
 
-    def schema(self) -> Schema:
-        """One of three shapes."""
-        matrix = Items(vector(), 3, "").schema()
-        return {"anyOf": [INERTIA.schema(), vector().schema(), matrix]}
 
-
-_INERTIAS = "{ xx, yy, zz, xy, xz, yz }, a list [xx, yy, zz] or a 3 x 3 matrix"
+def _abouts(kind: type) -> dict[str, str]:
+    """What a dataclass says about its attributes."""
+    found: dict[str, str] = {}
+    for base in reversed(kind.__mro__):
+        text = cleandoc(base.__doc__ or "").partition("Attributes:")[2].partition("Example:")[0]
+        for names, about in _ATTRIBUTE.findall(text):
+            found |= {name: " ".join(about.split()) for name in names.split(", ")}
+    return found
 
 
 @dataclass(frozen=True)
@@ -130,172 +218,13 @@ class Parts:
         return {"type": "array", "items": items, "minItems": 1, "maxItems": 6}
 
 
-@dataclass(frozen=True)
-class Turning:
-    """The basement's rotation: by an axis and an angle, by three angles, or "input"."""
-
-    def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """The table, or the word."""
-        return value if value == BY_INPUT else TURNING.read(value, spot, names)
-
-    def schema(self) -> Schema:
-        """A table or the word."""
-        return {"anyOf": [{"const": BY_INPUT}, TURNING.schema()]}
-
-
-INERTIA = Table(
-    {
-        key: Field(NumberOrFormula(least=0 if key[0] == key[1] else None), f"entry {key} (kg m^2)")
-        for key in ("xx", "yy", "zz", "xy", "xz", "yz")
-    },
-    about="the tensor's own entries; those left out are 0",
-)
-
-_UNIT = Field(TextKind(), "its unit, for readers")
-_ABOUT = Field(TextKind(), "its meaning, for readers")
-
-PARAMETER = Table(
-    {
-        "value": Field(NumberOrFormula(), "a number, or an expression of earlier parameters", True),
-        "unit": _UNIT,
-        "about": _ABOUT,
-    }
-)
-INPUT = Table({"unit": _UNIT, "about": _ABOUT})
-
-FRAME = Table(
-    {
-        "at": Field(vector(), "origin in the body's frame (m)"),
-        "rpy": Field(vector(folded=True), "turns about the body's fixed x, y, z (rad)"),
-        "axis": Field(Direction(), "direction to turn about"),
-        "angle": Field(NumberOrFormula(folded=True), "angle of the turn about axis (rad)"),
-    },
-    exclusive=(("rpy", "axis"), ("rpy", "angle")),
-)
-TURNING = Table(
-    {
-        "axis": Field(Direction(), "direction to turn about"),
-        "angle": Field(Timed(), "angle of the turn about axis (rad)"),
-        "rpy": Field(PrescribedMotion(3), "turns about fixed x, y, z (rad)"),
-    },
-    needs=(("axis", "rpy"), ("angle", "rpy")),
-    exclusive=(("rpy", "axis"), ("rpy", "angle")),
-)
-BASEMENT = Table(
-    {
-        "position": Field(PrescribedMotion(3), 'three expressions of t (m), or "input"'),
-        "rotation": Field(Turning(), 'a turn as a function of t, or "input"'),
-    },
-    about='a massless body called "basement" in prescribed motion, for others to stand on',
-)
-GRAVITY = Table(
-    {"acceleration": Field(vector(), "of free fall, in ground axes (m/s^2)", True)},
-)
-BODY_TABLE = Table(
-    {
-        "mass": Field(NumberOrFormula(least=0), "kg; 0 if left out"),
-        "mass_center": Field(vector(), "in the body's frame (m); its origin if left out"),
-        "inertia": Field(
-            InertiaTable(), "kg m^2, in body axes, about the mass centre; 0 if left out"
-        ),
-        "first_moment": Field(
-            vector(),
-            "mass times mass centre (kg m), instead of mass_center; the inertia is then about the origin",
-        ),
-        "frame": Field(Named(FRAME), "frames of this body by name"),
-    },
-    exclusive=(("mass_center", "first_moment"),),
-)
-FOLLOWS = Table(
-    {
-        "joint": Field(JointName(), "the joint it follows", True),
-        "ratio": Field(
-            NumberOrFormula(folded=True), "its coordinate over that of the other; 1 if left out"
-        ),
-        "offset": Field(
-            NumberOrFormula(folded=True), "its coordinate where that of the other is 0 (rad or m)"
-        ),
-    }
-)
-LOAD = Table(
-    {
-        "at": Field(Terminal(), "where it acts: body or body.frame", True),
-        "force": Field(vector(Scope.STATE), "N"),
-        "torque": Field(vector(Scope.STATE), "N m"),
-        "axes": Field(Word((WORLD, BODY)), '"world" (default) or "body": axes of what is given'),
-    },
-    needs=(("force", "torque"),),
-)
-ROTOR = Table(
-    {
-        "joint": Field(JointName(), "the revolute joint it drives", True),
-        "inertia": Field(NumberOrFormula(least=0), "about the joint's axis (kg m^2)", True),
-        "ratio": Field(NumberOrFormula(), "turns of the rotor for one of the joint; 1 if left out"),
-    }
-)
-RELATION = Table(
-    {
-        "rate": Field(
-            NumberOrFormula(Scope.STATE),
-            "an expression that is zero, linear in the rates der(...)",
-            True,
-        )
-    },
-    about="a constraint on velocities: a(q) v = b(q, t)",
-)
-OUTPUT = Table(
-    {
-        "value": Field(NumberOrFormula(Scope.OUTPUT), "an expression", True),
-        "unit": _UNIT,
-        "about": _ABOUT,
-    }
-)
-FORMULATION = Table(
-    {
-        "tree": Field(
-            Listed("joints, or inertia edges body/inertia,"), "edges that must be branches"
-        ),
-        "coordinates": Field(
-            Coordinates(),
-            '"joint" (default), "absolute", "absolute-angle" or "automatic"; or one for each body named',
-        ),
-        "independent": Field(
-            Listed("coordinates"),
-            "what a closed mechanism is reduced to; chosen automatically if left out",
-        ),
-        "baumgarte": Field(
-            Items(NumberOrFormula(least=0), 2, "a list [alpha, beta]"),
-            "stabilises constraints in forward_dynamics: -2 alpha rate - beta^2 error (1/s)",
-        ),
-        "reactions": Field(
-            Word(REACTION_AXES), 'axes of reactions: "head" (default), "tail" or "ground"'
-        ),
-    },
-    about="choices of the formulation: none of them changes the physics",
-)
-HEAD = {
-    "name": Field(Label(), "prefix of everything emitted; the file's own name if left out"),
-    "description": Field(TextKind(2000, lines=True), "one paragraph for the head of emitted files"),
-}
-
-
-def _abouts(kind: type) -> dict[str, str]:
-    """What a dataclass says about its attributes."""
-    found: dict[str, str] = {}
-    for base in reversed(kind.__mro__):
-        text = cleandoc(base.__doc__ or "").partition("Attributes:")[2].partition("Example:")[0]
-        for names, about in _ATTRIBUTE.findall(text):
-            found |= {name: " ".join(about.split()) for name in names.split(", ")}
-    return found
-
-
 _KINDS: Mapping[str, Kind] = {
-    "Any": NumberOrFormula(),
+    "Any": Real(),
     "Vector": vector(),
     "Vector | None": Direction(),
     "bool": Flag(),
-    "str": TextKind(),
-    "str | None": TextKind(),
+    "str": FreeText(),
+    "str | None": FreeText(),
     "tuple[Vector, Vector]": Items(Direction(), 2, "a list of two directions"),
     "tuple[Any, ...]": Parts(),
 }
@@ -368,7 +297,7 @@ def element_table(name: str) -> Table:
         "joint": Field(JointName(), "along the coordinate of this joint"),
     }
     own = {
-        key: Field(NumberOrFormula(Scope.LAW if key in kind.laws else Scope.STATE), entry.about)
+        key: Field(Real(Scope.LAW if key in kind.laws else Scope.STATE), entry.about)
         for key, entry in _own(kind, Element).items()
     }
     about = (kind.__doc__ or "").strip().split("\n")[0]

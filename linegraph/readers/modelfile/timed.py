@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.model.choices import COORDINATES
 from linegraph.readers.modelfile.expressions import Scope
-from linegraph.readers.modelfile.kinds import WRONG, Items, NumberOrFormula, Schema, Word, said
+from linegraph.readers.modelfile.kinds import WRONG, Items, Real, Schema, Word, said
 from linegraph.readers.modelfile.report import shown
 
 if TYPE_CHECKING:
@@ -24,11 +24,11 @@ class Timed:
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
         """The expression, or the word."""
-        return value if value == BY_INPUT else NumberOrFormula(Scope.TIME).read(value, spot, names)
+        return value if value == BY_INPUT else Real(Scope.TIME).read(value, spot, names)
 
     def schema(self) -> Schema:
         """A number or a text."""
-        return NumberOrFormula(Scope.TIME).schema()
+        return Real(Scope.TIME).schema()
 
 
 @dataclass(frozen=True)
@@ -67,18 +67,14 @@ class Start:
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
         """A number or a tuple."""
         if not isinstance(value, list):
-            return NumberOrFormula().read(value, spot, names)
+            return Real().read(value, spot, names)
         count = len(value) if 1 <= len(value) <= MOST_COORDINATES else 1
-        return Items(NumberOrFormula(), count, "one number for each coordinate").read(
-            value, spot, names
-        )
+        return Items(Real(), count, "one number for each coordinate").read(value, spot, names)
 
     def schema(self) -> Schema:
         """A number, a text or a list."""
-        items = Items(NumberOrFormula(), 1, "").schema()
-        return {
-            "anyOf": [*NumberOrFormula().schema()["anyOf"], items | {"maxItems": MOST_COORDINATES}]
-        }
+        items = Items(Real(), 1, "").schema()
+        return {"anyOf": [*Real().schema()["anyOf"], items | {"maxItems": MOST_COORDINATES}]}
 
 
 @dataclass(frozen=True)

@@ -58,8 +58,8 @@ class Quotients:
     Example:
         >>> ring = Ring()
         >>> m, k = ring.symbol("p", "m"), ring.symbol("p", "k")
-        >>> from linegraph.symbolic.simplification.proof import Point
-        >>> quotients = Quotients(ring, Point(ring, {}, 0))
+        >>> from linegraph.symbolic.simplification.proof import SamplePoint
+        >>> quotients = Quotients(ring, SamplePoint(ring, {}, 0))
         >>> [[x]], _ = quotients.solve([[m * m + m * k]], [[k * m]])
         >>> above, below = quotients.of(x)
         >>> above == k.terms, below == (m + k).terms

@@ -1,0 +1,101 @@
+"""Kinds of keys that bodies and compound joints have: an inertia, the parts of a joint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from linegraph.components.body import symmetric
+from linegraph.readers.modelfile.fields import Field, Table
+from linegraph.readers.modelfile.kinds import (
+    WRONG,
+    Direction,
+    Items,
+    Real,
+    Schema,
+    said,
+    vector,
+)
+from linegraph.readers.modelfile.timed import (
+    BY_INPUT,
+    PrescribedMotion,
+    Timed,
+)
+
+if TYPE_CHECKING:
+    from linegraph.readers.modelfile.expressions import Names
+    from linegraph.readers.modelfile.report import Spot
+
+
+@dataclass(frozen=True)
+class InertiaTable:
+    """Entries by name, three moments, or a 3 x 3 matrix."""
+
+    def read(self, value: Any, spot: Spot, names: Names) -> Any:
+        """Entries by name."""
+        if isinstance(value, dict):
+            return INERTIA.read(value, spot, names)
+        if not isinstance(value, list) or len(value) != 3:
+            spot.error(f"{_INERTIAS} is wanted, not {said(value)}")
+            return WRONG
+        if not any(isinstance(row, list) for row in value):
+            found = Items(Real(least=0), 3, "").read(value, spot, names)
+            return WRONG if found is WRONG else dict(zip(("xx", "yy", "zz"), found, strict=True))
+        return self._matrix(value, spot, names)
+
+    def _matrix(self, value: list[Any], spot: Spot, names: Names) -> Any:
+        rows = [
+            vector().read(row, spot.at(i) if isinstance(row, list) else spot, names)
+            for i, row in enumerate(value)
+        ]
+        if any(row is WRONG for row in rows):
+            return WRONG
+        found = symmetric(rows)
+        if found is None:
+            spot.error("is not symmetric")
+            return WRONG
+        return dict(zip(ENTRIES, found, strict=True))
+
+    def schema(self) -> Schema:
+        """One of three shapes."""
+        matrix = Items(vector(), 3, "").schema()
+        return {"anyOf": [INERTIA.schema(), vector().schema(), matrix]}
+
+
+@dataclass(frozen=True)
+class Turning:
+    """The basement's rotation: by an axis and an angle, by three angles, or "input"."""
+
+    def read(self, value: Any, spot: Spot, names: Names) -> Any:
+        """The table, or the word."""
+        return value if value == BY_INPUT else TURNING.read(value, spot, names)
+
+    def schema(self) -> Schema:
+        """A table or the word."""
+        return {"anyOf": [{"const": BY_INPUT}, TURNING.schema()]}
+
+
+ENTRIES = ("xx", "xy", "xz", "yy", "yz", "zz")
+
+
+_INERTIAS = "{ xx, yy, zz, xy, xz, yz }, a list [xx, yy, zz] or a 3 x 3 matrix"
+
+
+INERTIA = Table(
+    {
+        key: Field(Real(least=0 if key[0] == key[1] else None), f"entry {key} (kg m^2)")
+        for key in ("xx", "yy", "zz", "xy", "xz", "yz")
+    },
+    about="the tensor's own entries; those left out are 0",
+)
+
+
+TURNING = Table(
+    {
+        "axis": Field(Direction(), "direction to turn about"),
+        "angle": Field(Timed(), "angle of the turn about axis (rad)"),
+        "rpy": Field(PrescribedMotion(3), "turns about fixed x, y, z (rad)"),
+    },
+    needs=(("axis", "rpy"), ("angle", "rpy")),
+    exclusive=(("rpy", "axis"), ("rpy", "angle")),
+)
