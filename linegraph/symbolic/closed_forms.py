@@ -27,7 +27,7 @@ class ClosedForms(EquationForms):
         return state_space_of(self)
 
     def linearise(self, at: Mapping[Any, Any] | None = None) -> StateSpace:
-        """A, B, C, D for small deviations from an equilibrium or a steady motion; see `Derivation.linearise`."""
+        """A, B, C, D for small deviations from a steady motion; see `Derivation.linearise`."""
         return linearise(self, at or {})
 
     linearize = linearise
