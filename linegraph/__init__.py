@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from linegraph.model.system import System
     from linegraph.notation import init_printing
     from linegraph.numeric.assembly import Assembly
+    from linegraph.programs.tree_costs import trees
     from linegraph.readers.read import read
     from linegraph.symbolic.closed_forms import ClosedForms
     from linegraph.symbolic.equation_list import Equations
@@ -53,6 +54,7 @@ _MODULES = {
     "init_printing": "notation",
     "read": "readers.read",
     "simplify": "symbolic.simplify",
+    "trees": "programs.tree_costs",
 }
 """The module of each public name."""
 
@@ -93,4 +95,5 @@ __all__ = [
     "init_printing",
     "read",
     "simplify",
+    "trees",
 ]

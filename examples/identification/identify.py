@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from linegraph import Derivation
-    from linegraph.identification.base_parameters import BaseParameters
+    from linegraph import BaseParameters, Derivation
 
 Array = Any
 

@@ -189,12 +189,12 @@ def trees(
     joints that are cut, and what to write in [formulation] for this tree.
     """
     with explained():
-        from linegraph.programs.tree_costs import candidates, table
+        from linegraph.programs.tree_costs import trees as sensible
 
         system = _read(model, base, locks, parameters, snap)
         with progress() as tell:
-            found = candidates(system, tell)
-        click.echo(table(found), nl=False)
+            found = sensible(system, tell)
+        click.echo(str(found), nl=False)
 
 
 @main.command()

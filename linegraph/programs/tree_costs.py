@@ -60,7 +60,15 @@ class Candidate:
         return f"tree = [{branches}]" if self.cut else "the only tree of joints"
 
 
-def candidates(model: Model | System, tell: Callable[[str], None] | None = None) -> list[Candidate]:
+class Trees(list[Candidate]):
+    """Trees, cheapest first; as text a table."""
+
+    def __str__(self) -> str:
+        """A table: operations, velocities, constraints, what is cut, and what to write for each tree."""
+        return _table(self)
+
+
+def trees(model: Model | System, tell: Callable[[str], None] | None = None) -> Trees:
     """The sensible trees, cheapest first; of equal cost the one the model has, then as found.
 
     Raises:
@@ -87,7 +95,8 @@ def candidates(model: Model | System, tell: Callable[[str], None] | None = None)
             refused = refused or error
     if refused is not None and not found:
         raise placed(refused, system)
-    return sorted(found.values(), key=lambda c: (c.operations, c.coordinates, not c.chosen))
+    cheapest = sorted(found.values(), key=lambda c: (c.operations, c.coordinates, not c.chosen))
+    return Trees(cheapest)
 
 
 def _same(own: Derived, choices: dict[str, Any]) -> bool:
@@ -141,7 +150,7 @@ def _judged(derivation: Derived, choices: dict[str, Any], chosen: bool) -> Candi
     return Candidate(choices, cut, len(tree.velocities), count, whole.operations, chosen)
 
 
-def table(found: list[Candidate]) -> str:
+def _table(found: list[Candidate]) -> str:
     """The candidates for a reader."""
     rows = [("operations", "velocities", "constraints", "cut", "")]
     for c in found:

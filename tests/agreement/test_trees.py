@@ -165,25 +165,25 @@ def four_bar() -> lg.Model:
 
 
 def test_the_candidates_are_listed_cheapest_first() -> None:
-    from linegraph.programs.tree_costs import candidates, table
+    from linegraph.programs.tree_costs import trees
 
-    found = candidates(four_bar())
+    found = trees(four_bar())
     counts = [candidate.operations for candidate in found]
     assert counts == sorted(counts)
     assert sum(candidate.chosen for candidate in found) == 1
     assert {candidate.cut for candidate in found} >= {("knee",), ("elbow",), ("swing",), ("motor",)}
     absolute = next(c for c in found if c.choices.get("coordinates") == ABSOLUTE)
     assert (absolute.coordinates, absolute.constraints) == (18, 20)
-    text = table(found)
+    text = str(found)
     assert "(this model)" in text
     assert 'coordinates = "absolute-angle"' in text
 
 
 def test_candidates_can_be_chosen_as_listed() -> None:
     """What the table says to write gives the numbers it lists."""
-    from linegraph.programs.tree_costs import candidates
+    from linegraph.programs.tree_costs import trees
 
-    for candidate in candidates(four_bar()):
+    for candidate in trees(four_bar()):
         model = four_bar()
         model.formulation(**{"independent": None, **candidate.choices})
         structure = lg.derive(model).structure
