@@ -107,6 +107,13 @@ def test_a_dead_zone_without_current_has_several_solutions() -> None:
     assert of_current(law, 0.5) == pytest.approx([1.5], rel=1e-9)
 
 
+@pytest.mark.parametrize(("u", "x"), [(0.5, 2.5), (-3.0, -5.0)])
+def test_a_law_that_is_flat_wherever_the_search_begins_is_solved_over_resistances(
+    u: float, x: float
+) -> None:
+    assert of_current("y = max(x - 2, 0) + min(x + 2, 0)", u) == pytest.approx([x], rel=1e-9)
+
+
 def test_a_flat_law_with_one_zero_has_one_solution() -> None:
     """The slope of x |x| is zero at zero, but nothing beside it solves the loop."""
     assert of_current("y = x*abs(x)", 0.0) == pytest.approx([0.0], abs=1e-6)

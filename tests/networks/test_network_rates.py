@@ -89,8 +89,9 @@ def test_a_rate_that_a_static_law_gives_is_written_as_such() -> None:
 
 def test_a_slope_that_is_zero_by_identity_asks_for_no_rate() -> None:
     dag, rates = rates_of()
-    v, d = dag.symbol(*C), dag.symbol("d", "D")
-    assert value(rates.of((v + d) * 2 - (2 * d + v)), {(RATE, 0): 9}) == 9
+    v, d, k = dag.symbol(*C), dag.symbol("d", "D"), dag.symbol("p", "k")
+    seeming = v + d * ((k + 1) * (k - 1)) - d * (k * k - 1)
+    assert value(rates.of(seeming), {(RATE, 0): 9}) == 9
 
 
 @pytest.mark.parametrize(
