@@ -58,6 +58,10 @@ def test_motions_without_inertia_are_a_null_space(seed: int) -> None:
         assert np.abs(factor @ x / np.abs(factor).max(axis=1)).max() < 1e-9 * np.abs(x).max()
 
 
+def test_a_light_body_is_no_body_without_inertia() -> None:
+    assert without_inertia(np.diag([1e-12, 1.0]), np.eye(2), 1e-9) == []
+
+
 def test_a_regular_inertia_leaves_none() -> None:
     factor = random_matrix(3, 4, 3, 3)
     assert without_inertia(factor.T @ factor, np.eye(3), 1e-9) == []
@@ -77,6 +81,11 @@ def test_taken_columns_keep_the_least_singular_value_above_the_bound(seed: int) 
             if values.min() > apart:
                 expected.append(k)
     assert apart_columns(J, order, 3, apart) == expected
+
+
+def test_orthogonal_columns_are_as_far_apart_as_one_alone() -> None:
+    """Their Frobenius norm alone would not decide that."""
+    assert apart_columns(np.eye(3), [0, 1, 2], 3, 0.9) == [0, 1, 2]
 
 
 def test_no_more_columns_are_taken_than_asked_for() -> None:

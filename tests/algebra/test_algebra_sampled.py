@@ -72,6 +72,15 @@ def test_bounds_of_errors_hold() -> None:
     assert found.errors[0] < 1e-14
 
 
+def test_errors_of_factors_are_errors_of_products_and_quotients() -> None:
+    """To first order: of x y the error of y times x and that of x times y, of 1/x that of x over x^2."""
+    dag = Dag()
+    x, y = sampled(dag.symbol("x"), [2.1], 1e-6), sampled(dag.symbol("y"), [5.1], 1e-3)
+    assert (x * y).errors[0] == pytest.approx(2.1e-3 + 5.1e-6)
+    assert (x + y).errors[0] == pytest.approx(1e-3 + 1e-6)
+    assert (1 / x).errors[0] == pytest.approx(1e-6 / 2.1**2)
+
+
 def test_a_number_within_its_error_is_whole_at_all_samples_or_none() -> None:
     assert traced("n", [2.0 + 1e-12, 2.0], [1e-12, 1e-15]) == 2
     assert isinstance(traced("n", [2.0 + 1e-10, 2.0], [1e-12, 1e-15]), Traced)
