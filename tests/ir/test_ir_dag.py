@@ -102,6 +102,8 @@ def test_a_number_is_not_the_node_that_has_its_index() -> None:
     x, y = dag.symbol("x"), dag.symbol("y")
     assert x * y is not x * y.index
     assert y + 1 is not y + y
+    assert 1 - x is not y - x
+    assert y / x is not 1 / x
 
 
 def test_functions_of_numbers_are_numbers() -> None:

@@ -64,6 +64,10 @@ def test_constants_meet(entry: Any, left: int) -> None:
     assert returned(found, POINT) == [value(entry, POINT)]
 
 
+def test_products_that_others_need_too_are_not_made_twice() -> None:
+    assert varying(restructured(X * K, Y * K, X * K + Y * K)) == 3
+
+
 @st.composite
 def entries(draw: st.DrawFn) -> list[Any]:
     nodes: list[Any] = [X, Y, K, M, 2]

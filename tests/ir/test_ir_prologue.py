@@ -80,6 +80,23 @@ def test_functions_of_one_model_share_constants() -> None:
     ]
 
 
+def test_a_constant_and_its_negative_are_one() -> None:
+    found, count = parts(program(-(K * M), X * (K * M), name="bias"))
+    assert count == 1
+    assert by_constants(found, "bias") == returned(program(-(K * M), X * (K * M)), POINT)
+
+
+def test_constants_that_meet_in_collected_sums_of_two_functions_are_one() -> None:
+    """Twice k is a constant of its own, and k alone is one, too."""
+    first = program(X + K + Y + K, X * K, name="bias")
+    second = program(Y + K + X * Y + K, name="equations")
+    found, _ = parts(first, second)
+    worth = [value(x, POINT) for x in found["prepare"].results[0].entries]
+    assert worth.count(2 * POINT["p", "k"]) == 1
+    for made in (first, second):
+        assert by_constants(found, made.name) == returned(made, POINT)
+
+
 def test_only_functions_of_simulation_and_control_have_twins() -> None:
     found, _ = parts(program(X * K, name="energy"), program(Y * K, name="frame_hand_pose"))
     assert "energy_prepared" not in found
@@ -95,10 +112,10 @@ def test_without_parameters_there_is_no_prologue() -> None:
     assert returned(found["bias"], POINT) == returned(made, POINT)
 
 
-def long(name: str) -> Program:
+def long(name: str, count: int = SHORT) -> Program:
     """A function of many operations on states and few on parameters."""
     x: Any = X
-    for n in range(SHORT):
+    for n in range(count):
         x = DAG.sin(x) + Y * (n + 2)
     return program(x * (K * M), name=name)
 
@@ -107,6 +124,9 @@ def test_a_long_function_hands_its_work_to_its_twin_and_a_short_one_does_it() ->
     found, _ = parts(long("bias"), program(X * (K * M), name="equations"))
     assert found["bias"].handed == "bias_prepared"
     assert found["equations"].handed == ""
+    shorter = long("bias", SHORT // 4)
+    assert SHORT // 2 < shorter.operations < SHORT
+    assert parts(shorter)[0]["bias"].handed == ""
 
 
 def test_a_function_that_could_then_fail_stays_whole() -> None:

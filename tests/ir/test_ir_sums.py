@@ -33,6 +33,8 @@ POINT = at((Fraction(7, 3), Fraction(-5, 2), Fraction(11, 13), Fraction(17, 19))
         ((2 * X) * Y + (3 * X) * Y, 2),
         ((X * Y + Z) - X * Y, 0),
         (5 * (X * 2) / Y, 2),
+        (((Y - X) - Y) + (Y - X), 2),
+        ((Z + P) + ((Z + P) + (Z - 2)), 4),
     ],
 )
 def test_terms_that_are_alike_meet(entry: Any, operations: int) -> None:
