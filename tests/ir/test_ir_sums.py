@@ -34,7 +34,6 @@ POINT = at((Fraction(7, 3), Fraction(-5, 2), Fraction(11, 13), Fraction(17, 19))
         ((X * Y + Z) - X * Y, 0),
         (5 * (X * 2) / Y, 2),
         (((Y - X) - Y) + (Y - X), 2),
-        ((Z + P) + ((Z + P) + (Z - 2)), 4),
     ],
 )
 def test_terms_that_are_alike_meet(entry: Any, operations: int) -> None:
@@ -47,6 +46,12 @@ def test_terms_that_are_alike_meet(entry: Any, operations: int) -> None:
 def test_what_repeats_nothing_stays_as_it_is(entry: Any) -> None:
     made = program(entry)
     assert collected(made) is made
+
+
+def test_a_sum_that_others_need_is_taken_apart_where_that_saves() -> None:
+    """3 z is a product that the other entry has already."""
+    made = program((Z + P) + ((Z + P) + (Z - 2)), -3 * Z)
+    assert collected(made).operations == 4
 
 
 def test_a_sum_that_others_need_is_not_taken_apart_at_a_cost() -> None:

@@ -103,6 +103,25 @@ def test_other_angles_are_found_where_they_leave_fewer_terms() -> None:
     assert same(expression(ring, found), chain)
 
 
+@pytest.mark.parametrize(
+    ("e", "together", "least"),
+    [
+        (k * sin(x) + m * sin(x + y) ** 2, 4, 2),
+        (m * cos(x + y) ** 3, 5, 1),
+        (m * sin(x - y) ** 2 + k * cos(x - y), 4, 2),
+    ],
+)
+def test_powers_of_sums_of_angles_are_found_in_these_sums(
+    e: Any, together: int, least: int
+) -> None:
+    ring = Ring()
+    terms = polynomial(ring, e).terms
+    assert len(merged(ring, terms)) == together
+    found = fewest(ring, terms)
+    assert len(found) == least
+    assert same(expression(ring, found), e)
+
+
 def test_the_search_takes_no_more_work_than_it_may() -> None:
     ring = Ring()
     terms = polynomial(ring, (sin(x) + cos(y) + sin(z) + m) ** 4).terms

@@ -38,6 +38,7 @@ def written(e: Any) -> Any:
         (k + m) * (k + l),
         m * sqrt(k + l),
         m / (k + l),
+        k * m + l / k,
         k * sin(x) + l * cos(y) + m,
         m * sympy.Max(k, l),
     ],

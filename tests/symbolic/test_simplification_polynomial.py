@@ -71,6 +71,13 @@ def test_what_is_equal_has_the_same_terms(a: Any, b: Any) -> None:
     assert polynomial(ring, a).terms == polynomial(ring, sympy.sympify(b)).terms
 
 
+def test_the_sine_of_the_other_difference_is_the_negative() -> None:
+    ring = Ring()
+    a, b = ring.symbol("p", "a"), ring.symbol("p", "b")
+    assert (ring.poly(ring.sin(a - b)) + ring.sin(b - a)).terms == {}
+    assert (ring.poly(ring.cos(a - b)) - ring.cos(b - a)).terms == {}
+
+
 def test_an_angle_with_a_number_has_its_sine_and_cosine_outside() -> None:
     ring = Ring()
     turned = ring.sin(ring.symbol("q", 0) + 2)
