@@ -96,6 +96,40 @@ def test_what_no_rule_gives_has_none(text: str) -> None:
     assert found is None
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "sinh(3 - x)*sign(k*x)",
+        "sqrt(abs(x))*sign(k*x - m)",
+        "sin(max(x, -1))",
+        "atan(min(x, 1))",
+        "sign(x - 1)/min(m, -x)",
+    ],
+)
+def test_what_jumps_is_no_constant_though_its_derivative_is_zero(text: str) -> None:
+    _, found = integrated(text)
+    assert found is None
+
+
+LINEAR = ("x", "x - 1", "2*x + 3", "k*x - m", "3 - x")
+INNER = (*LINEAR, "max(x, -1)", "min(m, 3 - x)", "abs(x - 1)", "x*x + 1")
+FACTORS = (
+    *INNER,
+    *(f"{f}({u})" for f in ("sign", "sin", "tanh", "atan") for u in INNER),
+    "sqrt(abs(x))",
+    "1/(1 + x*x)",
+)
+
+
+@settings(derandomize=True, deadline=None, max_examples=150)
+@given(st.lists(st.sampled_from(FACTORS), min_size=1, max_size=3))
+def test_any_antiderivative_that_is_found_is_one(factors: list[str]) -> None:
+    f, found = integrated("*".join(f"({factor})" for factor in factors))
+    for x in (-1.37, 0.43, 1.91) if found is not None else ():
+        expected = float(value(f, at(x)))
+        assert math.isclose(slope(found, at(x), X), expected, rel_tol=1e-8, abs_tol=1e-8)
+
+
 @settings(derandomize=True, deadline=None, max_examples=40)
 @given(st.lists(st.integers(-4, 4), min_size=1, max_size=5), st.integers(-3, 3))
 def test_polynomials_are_integrated_exactly(coefficients: list[int], shift: int) -> None:
