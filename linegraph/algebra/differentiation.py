@@ -249,6 +249,8 @@ class Sizes:
             return a * b
         if node.op == DIV:
             return a / self._dag.function("abs", node.b)
+        if node.op == "atan2":
+            return self._of_angle(node, a, b)
         if node.b is not None:
             return a + b
         if node.op == "sqrt":
@@ -262,6 +264,11 @@ class Sizes:
         """Of a root, whose slope is infinite at zero: an error of e a there is one of sqrt(e a) at most."""
         steep = a / (2 * node + (1e-5 * self._dag.sqrt(a) + SMALLEST))
         return self._dag.function("abs", node) + steep
+
+    def _of_angle(self, node: Node, a: Scalar, b: Scalar) -> Scalar:
+        """Of the angle of a point: errors of its coordinates turn it the more the nearer the origin is."""
+        y, x, angle = (self._dag.function("abs", part) for part in (node.a, node.b, node))
+        return angle + (x * a + y * b) / (y * y + x * x + SMALLEST)
 
     def _given(self, node: Node) -> bool:
         """Whether a node is the same number at every evaluation."""

@@ -170,6 +170,17 @@ def test_the_size_of_a_function_is_its_own_and_that_of_its_argument_by_the_slope
     assert found == pytest.approx(math.sin(0.1) + math.cos(0.1) * 5.9)
 
 
+def test_the_size_of_an_angle_grows_as_the_point_comes_near() -> None:
+    """An error e of x - y turns the point (2, x - y) by 2 e over its distance squared."""
+    dag = Dag()
+    x, y = dag.symbol(*X), dag.symbol(*Y)
+    size = Sizes(Calculus(dag))
+    found = float(value(size(dag.function("atan2", x - y, 2)), {X: 3, Y: 2.9}))
+    assert found == pytest.approx(math.atan2(0.1, 2) + (2 * 5.9 + 0.1 * 2) / (2**2 + 0.1**2))
+    assert value(size(dag.function("atan2", x, y)), {X: 0, Y: 0}) == 0
+    assert value(size(dag.function("max", x, y)), {X: 3, Y: -4}) == 7
+
+
 def test_what_no_unknown_is_in_is_one_term() -> None:
     dag = Dag()
     x, y = dag.symbol(*X), dag.symbol(*Y)

@@ -82,6 +82,14 @@ def test_a_diode_takes_what_the_resistor_lets_through(u: float) -> None:
     assert math.isclose(10 * flow + found, u, rel_tol=1e-9, abs_tol=1e-9)
 
 
+@pytest.mark.parametrize("law", ["y = atan2(x - 1, 1e-9)", "y = atan((x - 1)*1e9)"])
+@pytest.mark.parametrize("u", [1.3, 1.7, -0.2])
+def test_a_steep_angle_is_solved_as_well_as_rounding_allows(law: str, u: float) -> None:
+    """Of R = 1: the voltage is 1 but for some 1e-9, and the angle what the resistor lets through."""
+    found = voltage(behind_a_resistor(AnyElement("N", AT_B, law=law)), u, 1.0)
+    assert math.isclose(found, 1 + 1e-9 * math.tan(u - 1), abs_tol=1e-14)
+
+
 def fed(law: str) -> Network:
     """An element that one ampere flows through."""
     parts = CurrentSource("I", ("ground", "b"), "u"), AnyElement("N", AT_B, law=law)
