@@ -196,6 +196,16 @@ def test_the_size_of_a_root_stays_finite_at_zero() -> None:
     assert size == pytest.approx(math.sqrt(2) * 1e5)
 
 
+@pytest.mark.parametrize("name", ["asin", "acos"])
+def test_the_size_of_an_angle_stays_finite_at_the_end_of_its_range(name: str) -> None:
+    dag = Dag()
+    angle = dag.function(name, dag.symbol(*X))
+    size = Sizes(Calculus(dag))(angle)
+    inside = abs(getattr(math, name)(0.6)) + 0.6 / (0.8 + 1e-5 * math.sqrt(0.6))
+    assert float(value(size, {X: 0.6})) == pytest.approx(inside)
+    assert float(value(size, {X: 1})) == pytest.approx(getattr(math, name)(1) + 1e5)
+
+
 def test_substitution_puts_scalars_in_place_of_symbols() -> None:
     dag = Dag()
     x, y = dag.symbol(*X), dag.symbol(*Y)

@@ -90,6 +90,16 @@ def test_a_steep_angle_is_solved_as_well_as_rounding_allows(law: str, u: float) 
     assert math.isclose(found, 1 + 1e-9 * math.tan(u - 1), abs_tol=1e-14)
 
 
+@pytest.mark.parametrize("u", [0.0, -3.1, -9.0])
+def test_an_angle_whose_sine_is_limited_is_solved_at_its_limits(u: float) -> None:
+    """Its slope there is infinite from within and zero from without."""
+    network = behind_a_resistor(AnyElement("N", AT_B, law="y = asin(min(1, max(-1, x + 3)))"))
+    expected = bisected(
+        lambda x: 0.1 * math.asin(min(1, max(-1, x + 3))) + x - u, abs(u) * -2 - 1, abs(u) * 2 + 1
+    )
+    assert math.isclose(voltage(network, u, 0.1), expected, rel_tol=1e-9)
+
+
 def fed(law: str) -> Network:
     """An element that one ampere flows through."""
     parts = CurrentSource("I", ("ground", "b"), "u"), AnyElement("N", AT_B, law=law)
