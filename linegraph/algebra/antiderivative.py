@@ -269,11 +269,15 @@ class _Rules:
         return None if over else self._primitive(g.op, u, g)
 
     def _constant_ratio(self, f: Scalar, u: Scalar) -> Scalar | None:
-        """A factor by the slope of u, if that is constant."""
+        """A factor by the slope of u, if that is constant.
+
+        A derivative of zero would not do: that of a sign is zero, too, and of the slope of max(u, 0).
+        """
         if not self._varies(u):
             return None
         ratio = f / self._calculus.derivative(u, self._by)
-        if self._residues(self._calculus.derivative(ratio, self._by)):
+        elsewhere = substitution(self._dag, {self._by: self._dag.symbol("elsewhere")})(ratio)
+        if self._residues(ratio - elsewhere):
             return None
         return substitution(self._dag, {self._by: 1})(ratio)
 

@@ -249,19 +249,26 @@ class TermSizes:
             return a * b
         if node.op == DIV:
             return a / self._dag.function("abs", node.b)
+        if node.op == "atan2":
+            return self._of_angle(node, a, b)
         if node.b is not None:
             return a + b
-        if node.op == "sqrt":
-            return self._of_root(node, a)
+        if node.op in _STEEP:
+            return self._of_steep(node, a)
         return (
             self._dag.function("abs", node)
             + self._dag.function("abs", self._calculus.slope(node)) * a
         )
 
-    def _of_root(self, node: Node, a: Scalar) -> Scalar:
-        """Of a root, whose slope is infinite at zero: an error of e a there is one of sqrt(e a) at most."""
-        steep = a / (2 * node + (1e-5 * self._dag.sqrt(a) + SMALLEST))
+    def _of_steep(self, node: Node, a: Scalar) -> Scalar:
+        """Where a slope may be infinite: an error of e a there is one of some sqrt(e a), as in a root."""
+        steep = a / (_STEEP[node.op](self._dag, node) + (1e-5 * self._dag.sqrt(a) + SMALLEST))
         return self._dag.function("abs", node) + steep
+
+    def _of_angle(self, node: Node, a: Scalar, b: Scalar) -> Scalar:
+        """Of the angle of a point: errors of its coordinates turn it the more the nearer the origin is."""
+        y, x, angle = (self._dag.function("abs", part) for part in (node.a, node.b, node))
+        return angle + (x * a + y * b) / (y * y + x * x + SMALLEST)
 
     def _given(self, node: Node) -> bool:
         """Whether a node is the same number at every evaluation."""

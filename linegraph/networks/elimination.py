@@ -10,7 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from linegraph.algebra.powers import quotient
 from linegraph.ir.dag import SYMBOL, Dag, Node
+from linegraph.networks.laws import constant
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -72,8 +74,8 @@ def eliminate(
         if not _plain(pivot):
             found.pivots.append(pivot)
         scaled = LinearRow(
-            {symbol: _over(entry, pivot) for symbol, entry in pivot_row.entries.items()},
-            _over(pivot_row.rest, pivot),
+            {symbol: _over(entry, pivot, dag) for symbol, entry in pivot_row.entries.items()},
+            _over(pivot_row.rest, pivot, dag),
         )
         found.steps.append((unknown, scaled))
         for row in open_rows:
@@ -132,7 +134,10 @@ def _plain(x: Scalar) -> bool:
     return not isinstance(x, Node)
 
 
-def _over(x: Scalar, pivot: Scalar) -> Scalar:
-    if not isinstance(pivot, Node) and pivot in (1, -1):
+def _over(x: Scalar, pivot: Scalar, dag: Dag) -> Scalar:
+    """A quotient; one of two numbers is exact, since terms that cancel would not do so in floats."""
+    if isinstance(pivot, Node):
+        return x / pivot
+    if pivot in (1, -1):
         return x if pivot == 1 else -x
-    return x / pivot
+    return x / pivot if isinstance(x, Node) else constant(quotient(x, pivot), dag)
