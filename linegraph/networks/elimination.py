@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from linegraph.algebra.powers import quotient
 from linegraph.ir.dag import SYMBOL, Dag, Node
-from linegraph.networks.laws import constant
+from linegraph.networks.variables import constant
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence

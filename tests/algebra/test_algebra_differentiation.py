@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.plain_values import slope, value
 
-from linegraph.algebra.differentiation import Calculus, Replay, Sizes, substitute
+from linegraph.algebra.differentiation import Calculus, Replay, TermSizes, substitute
 from linegraph.algebra.protocol import Floats
 from linegraph.errors import ModelError
 from linegraph.ir.dag import Dag, Node
@@ -154,7 +154,7 @@ def test_a_function_without_a_rule_is_refused() -> None:
 def test_sizes_add_up_what_sums_cancel() -> None:
     dag = Dag()
     x, y = dag.symbol(*X), dag.symbol(*Y)
-    size = Sizes(Calculus(dag))
+    size = TermSizes(Calculus(dag))
     at = {X: 3, Y: -5}
     assert value(size(x - y), at) == 8
     assert value(size((x + y) * (x - 2)), at) == (3 + 5) * (3 + 2)
@@ -166,7 +166,7 @@ def test_sizes_add_up_what_sums_cancel() -> None:
 def test_the_size_of_a_function_is_its_own_and_that_of_its_argument_by_the_slope() -> None:
     dag = Dag()
     x, y = dag.symbol(*X), dag.symbol(*Y)
-    found = float(value(Sizes(Calculus(dag))(dag.sin(x + y)), {X: 3, Y: -2.9}))
+    found = float(value(TermSizes(Calculus(dag))(dag.sin(x + y)), {X: 3, Y: -2.9}))
     assert found == pytest.approx(math.sin(0.1) + math.cos(0.1) * 5.9)
 
 
@@ -174,7 +174,7 @@ def test_the_size_of_an_angle_grows_as_the_point_comes_near() -> None:
     """An error e of x - y turns the point (2, x - y) by 2 e over its distance squared."""
     dag = Dag()
     x, y = dag.symbol(*X), dag.symbol(*Y)
-    size = Sizes(Calculus(dag))
+    size = TermSizes(Calculus(dag))
     found = float(value(size(dag.function("atan2", x - y, 2)), {X: 3, Y: 2.9}))
     assert found == pytest.approx(math.atan2(0.1, 2) + (2 * 5.9 + 0.1 * 2) / (2**2 + 0.1**2))
     assert value(size(dag.function("atan2", x, y)), {X: 0, Y: 0}) == 0
@@ -184,7 +184,7 @@ def test_the_size_of_an_angle_grows_as_the_point_comes_near() -> None:
 def test_what_no_unknown_is_in_is_one_term() -> None:
     dag = Dag()
     x, y = dag.symbol(*X), dag.symbol(*Y)
-    found = Sizes(Calculus(dag), ("x",))((y - 3) + x)
+    found = TermSizes(Calculus(dag), ("x",))((y - 3) + x)
     assert value(found, {X: -2, Y: 4}) == 1 + 2
 
 
@@ -192,7 +192,7 @@ def test_the_size_of_a_root_stays_finite_at_zero() -> None:
     """An error e of x = y = 1 is one of sqrt(e) in the root: at 1e-10 not more than 1e-5 of it."""
     dag = Dag()
     x, y = dag.symbol(*X), dag.symbol(*Y)
-    size = float(value(Sizes(Calculus(dag))(dag.sqrt(x - y)), {X: 1, Y: 1}))
+    size = float(value(TermSizes(Calculus(dag))(dag.sqrt(x - y)), {X: 1, Y: 1}))
     assert size == pytest.approx(math.sqrt(2) * 1e5)
 
 
@@ -200,7 +200,7 @@ def test_the_size_of_a_root_stays_finite_at_zero() -> None:
 def test_the_size_of_an_angle_stays_finite_at_the_end_of_its_range(name: str) -> None:
     dag = Dag()
     angle = dag.function(name, dag.symbol(*X))
-    size = Sizes(Calculus(dag))(angle)
+    size = TermSizes(Calculus(dag))(angle)
     inside = abs(getattr(math, name)(0.6)) + 0.6 / (0.8 + 1e-5 * math.sqrt(0.6))
     assert float(value(size, {X: 0.6})) == pytest.approx(inside)
     assert float(value(size, {X: 1})) == pytest.approx(getattr(math, name)(1) + 1e5)

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph import Model
 from linegraph.components.scalar.branches import edges_of, projections
-from linegraph.networks.laws import Laws, laws_of
+from linegraph.networks.law_records import Laws
+from linegraph.networks.laws import laws_of
 from linegraph.networks.selection import Selection, select
 from linegraph.networks.static import Solver, Statics
 

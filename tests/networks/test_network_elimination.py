@@ -13,19 +13,19 @@ from support.plain_values import value
 
 from linegraph.algebra.residues import Residues
 from linegraph.ir.dag import Dag
-from linegraph.networks.elimination import Elimination, Row, eliminate
+from linegraph.networks.elimination import Elimination, LinearRow, eliminate
 
 X, Y, Z = ("X", "x"), ("X", "y"), ("X", "z")
 KEYS = (X, Y, Z)
 
 
-def solved(rows: list[Row], dag: Dag | None = None, last: Any = ()) -> Elimination:
+def solved(rows: list[LinearRow], dag: Dag | None = None, last: Any = ()) -> Elimination:
     return eliminate(rows, dag or Dag(), Residues(), last)
 
 
 def test_two_rows_of_numbers_give_two_numbers() -> None:
     """X + y = 3 and x - y = 1."""
-    found = solved([Row({X: 1, Y: 1}, -3), Row({X: 1, Y: -1}, -1)])
+    found = solved([LinearRow({X: 1, Y: 1}, -3), LinearRow({X: 1, Y: -1}, -1)])
     assert found.values == {X: 2, Y: 1}
     assert found.left == []
     assert found.pivots == []
@@ -47,7 +47,7 @@ def test_rows_in_letters_are_solved_as_the_same_rows_in_fractions(rows: list[lis
     letters = [
         [k * dag.symbol("p", f"p{i}{j}") for j, k in enumerate(row)] for i, row in enumerate(rows)
     ]
-    given_rows = [Row({key: row[j] for j, key in enumerate(KEYS)}, row[3]) for row in letters]
+    given_rows = [LinearRow({key: row[j] for j, key in enumerate(KEYS)}, row[3]) for row in letters]
     found = solved(given_rows, dag)
     numbers = [[value(x, at) for x in row] for row in letters]
     rank = sympy.Matrix(
@@ -68,7 +68,7 @@ def test_rows_in_letters_are_solved_as_the_same_rows_in_fractions(rows: list[lis
 def test_entries_of_whole_numbers_cancel_exactly() -> None:
     """2 - 49 (2/49) is not zero in floats: as a pivot what is left there would ruin y."""
     rows = [[49, 2, 10, 7], [147, 6, 7, 6], [6, 2, 49, 6]]
-    found = solved([Row(dict(zip(KEYS, row[:3], strict=True)), row[3]) for row in rows])
+    found = solved([LinearRow(dict(zip(KEYS, row[:3], strict=True)), row[3]) for row in rows])
     exact = sympy.Matrix([row[:3] for row in rows]).LUsolve(-sympy.Matrix([r[3] for r in rows]))
     values = [value(found.values[key], {}) for key in KEYS]
     assert values == [Fraction(int(x.p), int(x.q)) for x in exact]
@@ -78,7 +78,7 @@ def test_pivots_of_one_come_before_letters_so_that_nothing_is_divided_by() -> No
     """A resistor behind a source: x - R y = 0 and x = u."""
     dag = Dag()
     R, u = dag.symbol("p", "R"), dag.symbol("u", "u")
-    found = solved([Row({X: 1, Y: -R}, 0), Row({X: 1}, -u)], dag)
+    found = solved([LinearRow({X: 1, Y: -R}, 0), LinearRow({X: 1}, -u)], dag)
     assert found.pivots == [-R]
     assert found.values[X] is u
     assert value(found.values[Y], {("p", "R"): 4, ("u", "u"): 10}) == Fraction(5, 2)
@@ -88,7 +88,7 @@ def test_what_is_zero_by_identity_is_no_pivot() -> None:
     dag = Dag()
     a, b = dag.symbol("p", "a"), dag.symbol("p", "b")
     nothing = (a + b) * (a - b) - (a * a - b * b)
-    found = solved([Row({X: nothing, Y: a}, -b)], dag)
+    found = solved([LinearRow({X: nothing, Y: a}, -b)], dag)
     assert list(found.values) == [Y]
     assert found.pivots == [a]
 
@@ -97,28 +97,32 @@ def test_what_cancels_while_rows_are_subtracted_is_no_pivot_either() -> None:
     """The second row is the first times b: its rest says what must be zero."""
     dag = Dag()
     a, b, c = (dag.symbol("p", name) for name in "abc")
-    found = solved([Row({X: a, Y: 1}, c), Row({X: a * b, Y: b}, 0)], dag)
+    found = solved([LinearRow({X: a, Y: 1}, c), LinearRow({X: a * b, Y: b}, 0)], dag)
     assert len(found.values) == 1
     (left,) = found.left
     assert value(left, {("p", "a"): 2, ("p", "b"): 3, ("p", "c"): 5}) in (15, -15)
 
 
 def test_an_unknown_kept_for_last_is_left_to_the_others() -> None:
-    row = Row({X: 1, Y: 1}, -3)
+    row = LinearRow({X: 1, Y: 1}, -3)
     assert list(solved([row]).values) == [X]
     assert list(solved([row], last={X}).values) == [Y]
-    both = solved([row, Row({X: 1, Y: -1}, -1)], last={X})
+    both = solved([row, LinearRow({X: 1, Y: -1}, -1)], last={X})
     assert both.values == {X: 2, Y: 1}
 
 
 @pytest.mark.parametrize(("owner", "unknown"), [("", X), ("x", X), ("y", Y)])
 def test_a_law_is_solved_for_a_variable_of_its_own_edge(owner: str, unknown: Any) -> None:
-    assert list(solved([Row({X: 1, Y: 1}, 1, owner)]).values) == [unknown]
+    assert list(solved([LinearRow({X: 1, Y: 1}, 1, owner)]).values) == [unknown]
 
 
 def test_the_pivot_that_fills_least_is_taken() -> None:
     """Solving the first row for x would put y and z into both other rows."""
-    rows = [Row({X: 1, Y: 1, Z: 1}, -6), Row({X: 1, Y: -1}, 1), Row({X: 1, Z: -1}, 2)]
+    rows = [
+        LinearRow({X: 1, Y: 1, Z: 1}, -6),
+        LinearRow({X: 1, Y: -1}, 1),
+        LinearRow({X: 1, Z: -1}, 2),
+    ]
     found = solved(rows)
     assert found.values == {X: 1, Y: 2, Z: 3}
     assert found.steps[0][0] != X

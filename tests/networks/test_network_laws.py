@@ -23,7 +23,7 @@ from linegraph.components.scalar.resistor import Resistor
 from linegraph.components.scalar.transformer import Transformer
 from linegraph.errors import ModelError
 from linegraph.ir.dag import Dag, Node
-from linegraph.networks.laws import constant, key_of
+from linegraph.networks.variables import constant, key_of
 
 if TYPE_CHECKING:
     from linegraph.components.scalar.base import Component

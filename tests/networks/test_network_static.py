@@ -25,7 +25,7 @@ from linegraph.networks.static import DUAL, EASE, LOOP, Statics, pruned
 
 if TYPE_CHECKING:
     from linegraph.components.scalar.base import Component
-    from linegraph.networks.laws import Laws
+    from linegraph.networks.law_records import Laws
 
 AT_A = ("a", "ground")
 

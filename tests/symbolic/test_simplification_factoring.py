@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from rings import SYMBOLS, expression, k, l, m, polynomial, same, u, w, x, y
 from sympy import cos, sin, sqrt
 
-from linegraph.symbolic.simplification.factoring import Writer, in_decimals, number
+from linegraph.symbolic.simplification.factoring import SympyWriter, in_decimals, number
 from linegraph.symbolic.simplification.polynomial import Ring
 
 
-def writer(ring: Ring) -> Writer:
-    return Writer(ring, SYMBOLS.__getitem__)
+def writer(ring: Ring) -> SympyWriter:
+    return SympyWriter(ring, SYMBOLS.__getitem__)
 
 
 def written(e: Any) -> Any:

@@ -12,12 +12,12 @@ from sympy import cos, sin, sqrt
 from linegraph.algebra.sympy_scalars import evaluate
 from linegraph.ir.dag import Dag
 from linegraph.symbolic.simplification.polynomial import Ring
-from linegraph.symbolic.simplification.proof import DIGITS, EXACT, Point, Precise
+from linegraph.symbolic.simplification.proof import DIGITS, EXACT, Precise, SamplePoint
 
 
-def point(seed: int = 0, **more: Any) -> tuple[Ring, Point]:
+def point(seed: int = 0, **more: Any) -> tuple[Ring, SamplePoint]:
     ring = Ring()
-    return ring, Point(ring, dict(PLACES), seed, **more)
+    return ring, SamplePoint(ring, dict(PLACES), seed, **more)
 
 
 FORMS = [

@@ -12,13 +12,13 @@ from rings import expression, k, l, m, polynomial, same, x, y
 from sympy import cos, sin, sqrt
 
 from linegraph.symbolic.simplification.polynomial import Ring, Swollen
-from linegraph.symbolic.simplification.proof import Point
+from linegraph.symbolic.simplification.proof import SamplePoint
 from linegraph.symbolic.simplification.quotients import Quotients, Singular
 
 
 def made(budget: float = float("inf")) -> tuple[Ring, Quotients]:
     ring = Ring(budget)
-    return ring, Quotients(ring, Point(ring, {}, 0))
+    return ring, Quotients(ring, SamplePoint(ring, {}, 0))
 
 
 def lowest(e: Any) -> tuple[Any, Any]:
