@@ -246,9 +246,9 @@ class TermSizes:
         if node.op in (ADD, SUB):
             return a + b
         if node.op == MUL:
-            return a * b
+            return self._of_product(node, a, b)
         if node.op == DIV:
-            return a / self._dag.function("abs", node.b)
+            return self._of_quotient(node, a, b)
         if node.op == "atan2":
             return self._of_angle(node, a, b)
         if node.b is not None:
@@ -259,6 +259,18 @@ class TermSizes:
             self._dag.function("abs", node)
             + self._dag.function("abs", self._calculus.slope(node)) * a
         )
+
+    def _of_product(self, node: Node, a: Scalar, b: Scalar) -> Scalar:
+        """An error of one factor times the other's value: factors may be differences of what is large."""
+        x, y = (self._dag.function("abs", part) for part in (node.a, node.b))
+        if _same(a, x):
+            return x * b
+        return a * y if _same(b, y) else x * b + a * y
+
+    def _of_quotient(self, node: Node, a: Scalar, b: Scalar) -> Scalar:
+        """An error of the numerator, and of the denominator times the quotient."""
+        y, quotient = (self._dag.function("abs", part) for part in (node.b, node))
+        return a / y if _same(b, y) else (a + quotient * b) / y
 
     def _of_steep(self, node: Node, a: Scalar) -> Scalar:
         """Where a slope may be infinite: an error of e a there is one of some sqrt(e a), as in a root."""
@@ -280,6 +292,11 @@ class TermSizes:
         if x is None:
             return 0
         return self._known[x.index] if isinstance(x, Node) else abs(x)
+
+
+def _same(size: Scalar, value: Scalar) -> bool:
+    """Whether a size is that of one term: there is no error but rounding of the number itself."""
+    return size is value or not (isinstance(size, Node) or isinstance(value, Node))
 
 
 def operands(node: Node) -> list[Node]:

@@ -8,6 +8,7 @@ from linegraph.model.system import System, frozen, settled
 from linegraph.model.terminal_graphs import system_graph, terminals_of
 
 if TYPE_CHECKING:
+    from linegraph.components.forces import Element, Load
     from linegraph.graph.multigraph import SystemGraph
     from linegraph.model.choices import Choices
     from linegraph.spatial.placement import Placement
@@ -63,6 +64,16 @@ class Snapshots:
             source=self.source,
             places=frozen(self.places),
         )
+
+    @property
+    def elements(self) -> tuple[Element | Load, ...]:
+        """Force elements and loads, and what the networks' edges in mechanics exert."""
+        return self.system().elements
+
+    @property
+    def depends_on_time(self) -> bool:
+        """Whether a prescribed motion or a law names the time t."""
+        return self.system().depends_on_time
 
     def terminals(self) -> dict[str, tuple[str, Placement]]:
         """Every terminal a joint may be connected to: its body and its placement there."""

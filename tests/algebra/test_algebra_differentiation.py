@@ -157,10 +157,21 @@ def test_sizes_add_up_what_sums_cancel() -> None:
     size = TermSizes(Calculus(dag))
     at = {X: 3, Y: -5}
     assert value(size(x - y), at) == 8
-    assert value(size((x + y) * (x - 2)), at) == (3 + 5) * (3 + 2)
+    assert value(size(x * (x + y)), at) == 3 * 8
     assert value(size((x + y) / y), at) == value(8 / dag.function("abs", y), at)
     assert size(-7) == 7
     assert value(size(-(x + y)), at) == 8
+
+
+def test_an_error_of_a_factor_counts_by_the_value_of_the_other() -> None:
+    """Of (x + y)(x - 2) at x = 3, y = -5: 8 of the first times 1, and 5 of the second times 2."""
+    dag = Dag()
+    x, y = dag.symbol(*X), dag.symbol(*Y)
+    size = TermSizes(Calculus(dag))
+    at = {X: 3, Y: -5}
+    assert value(size((x + y) * (x - 2)), at) == 8 * 1 + 5 * 2
+    # the quotient is -2: (8 + 2 * 5) / 1
+    assert value(size((x + y) / (x - 2)), at) == 18
 
 
 def test_the_size_of_a_function_is_its_own_and_that_of_its_argument_by_the_slope() -> None:

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph import Model
 from linegraph.components.scalar.branches import edges_of, projections
-from linegraph.networks.law_records import Laws
 from linegraph.networks.laws import laws_of
 from linegraph.networks.selection import Selection, select
 from linegraph.networks.static import Solver, Statics
@@ -17,6 +16,7 @@ if TYPE_CHECKING:
     from linegraph.components.scalar.base import Component
     from linegraph.components.scalar.branches import Branch
     from linegraph.graph.multigraph import Projection
+    from linegraph.networks.law_records import Laws
 
 
 class Parts(NamedTuple):

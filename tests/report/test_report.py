@@ -454,7 +454,8 @@ def test_what_a_model_was_made_from_stands_at_the_end() -> None:
 
 SCRIPT = """
 import sys
-from linegraph import derive, modelfile
+from linegraph import derive
+from linegraph.readers import modelfile
 from linegraph.report import report
 for path in sys.argv[1:]:
     d = derive(modelfile.read(path))
