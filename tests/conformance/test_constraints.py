@@ -147,7 +147,7 @@ def pendulum_on(rod: bool) -> lg.Model:
 
 def test_a_rod_is_a_massless_body_between_joints() -> None:
     one, two = emitted(pendulum_on(True)), lg.derive(pendulum_on(False))
-    other = emitted(two.model)
+    other = emitted(two.system)
     rng = np.random.default_rng(6)
     q, v = one.project(lg.derive(pendulum_on(True)).assembled.q, rng.normal(size=one.NV))
     u = rng.normal(size=one.NU)

@@ -28,6 +28,7 @@ from linegraph.emission.emit import module_for, render
 from linegraph.model.body_handle import BodyHandle
 from linegraph.numeric.reference import Numeric
 from linegraph.paper.joint_form import paper_matrices
+from linegraph.spatial.inertia import Moments
 from linegraph.spatial.rotation import Turn
 
 if TYPE_CHECKING:
@@ -342,7 +343,7 @@ def test_rest_is_where_the_frames_coincide(name: str) -> None:
 
 def test_what_is_handed_to_the_tail_body() -> None:
     """Nothing remains of what could be handed over; compound joints keep everything."""
-    solid = lg.joints.Moments(3.0, (0.1, 0.2, 0.3), (1.0, 0.1, 0.2, 1.5, 0.3, 1.2))
+    solid = Moments(3.0, (0.1, 0.2, 0.3), (1.0, 0.1, 0.2, 1.5, 0.3, 1.2))
     for word in ("spherical", "universal"):
         kept, handed = JOINTS[word]("joint", ("a", "b")).regroup(solid)
         assert (kept.mass, kept.first, kept.second) == (0, solid.first, solid.second)

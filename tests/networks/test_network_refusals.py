@@ -1119,8 +1119,9 @@ def test_what_a_loop_gives_solves_it(name: str, tmp_path: Path) -> None:
     emitted = Emitted(squared(law), tmp_path)
     numeric = derive(emitted.model).numeric()
     found = 0
-    for v in np.linspace(-20, 20, 161).tolist():
-        for way in ("in_c", "in_python", "numeric"):
+    for k, v in enumerate(np.linspace(-20, 20, 161).tolist()):
+        # Python is slow, and does the same as C
+        for way in ("in_c", "in_python", "numeric") if k % 8 == 0 else ("in_c",):
             try:
                 if way == "numeric":
                     y = numeric.bias([], [v])[0]
@@ -1132,7 +1133,7 @@ def test_what_a_loop_gives_solves_it(name: str, tmp_path: Path) -> None:
                 continue
             assert abs(residual(v, y)) <= 1e-9 * (1 + abs(v)), (way, v, y)
             found += 1
-    assert found >= 100
+    assert found >= 60
 
 
 ROUGH: dict[str, Any] = {
