@@ -113,7 +113,6 @@ def run(tree: Path, work: Path) -> None:
     work.mkdir()
     names = list(models())
     environment = {**os.environ, "PYTHONPATH": str(tree), "OPENBLAS_NUM_THREADS": "1"}
-    environment["PYTHONDONTWRITEBYTECODE"] = "1"
 
     def one(name: str) -> None:
         done = subprocess.run(
