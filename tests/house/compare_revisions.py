@@ -34,9 +34,9 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "show": ("show", "{model}"),
     "trees": ("trees", "{model}"),
     "parameters": ("parameters", "{model}"),
-    "derive": ("derive", "{model}", "--output", "{out}/derivation.md"),
-    "html": ("derive", "{model}", "--output", "{out}/derivation.html"),
-    "latex": ("derive", "{model}", "--output", "{out}/derivation.tex"),
+    "derive": ("derive", "{model}", "--level", "fast", "--output", "{out}/derivation.md"),
+    "html": ("derive", "{model}", "--level", "none", "--output", "{out}/derivation.html"),
+    "latex": ("derive", "{model}", "--level", "none", "--output", "{out}/derivation.tex"),
 }
 """What is run for each model; what a command prints is compared as well as the files that it writes."""
 
