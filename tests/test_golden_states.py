@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import random
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from emitted import load
 from test_golden import build, found, read, run
 
 import linegraph as lg
-from linegraph import golden, modelfile
+from linegraph import checking, golden, modelfile
 from linegraph.emission import module_for, render
 from linegraph.golden.draws import Drawing
 from linegraph.golden.point import Kept
@@ -108,3 +110,92 @@ def test_kinetic_energy_is_judged_by_its_own_parts() -> None:
     kinetic, *others = vectors.values["E"].scale
     assert kinetic == pytest.approx(max(row[0] for row in vectors.values["E"].rows), rel=1e-2)
     assert kinetic < 1e-3 * max(others)
+
+
+CLIPPER = """
+[inputs]
+u = { unit = "V" }
+[voltage_source.source]
+between = ["in", "ground"]
+voltage = "u"
+[resistor.R1]
+between = ["in", "a"]
+resistance = 1e3
+[diode.D1]
+between = ["a", "out"]
+[capacitor.C1]
+between = ["out", "ground"]
+capacitance = 1e-6
+"""
+"""A diode that conducts milliamperes at a volt, and no more than its 1e-14 A at most states near zero."""
+
+
+@pytest.mark.parametrize("current", ["1e-14", "1.00001e-14"])
+def test_a_diode_conducts_at_some_state(current: str, tmp_path: Path) -> None:
+    """Its saturation current, off by a part of 1e-5, is nothing beside the terms of states near zero."""
+    files = render(
+        modelfile.parse(CLIPPER.encode(), "m.toml"),
+        name="m",
+        only=("forward_dynamics",),
+        tests=True,
+    )
+    right = current == "1e-14"
+    for code, law in (
+        ("m.c", r"1e-14( \* \(t\d+ - 1.0\)\);)"),
+        ("m.py", r"1e-14( \* \(t\d+ - 1.0\),)"),
+    ):
+        files[code], count = re.subn(law, current + r"\1", files[code])
+        assert count == 1
+    status, _ = run(build(files, "m", tmp_path))
+    assert status == (not right)
+    load({"m.py": files["m.py"]}, "m", tmp_path)
+    checks = load({"test_m.py": files["test_m.py"]}, "test_m", tmp_path)
+    for at in (slice(None), checks.SCALES.index(1)):
+        with (
+            contextlib.nullcontext() if right else pytest.raises(AssertionError, match="is off by")
+        ):
+            checks.compare("forward_dynamics", at)
+    checks.compare("forward_dynamics", 0)
+
+
+def test_derivatives_of_a_diode_that_hardly_conducts_hold(tmp_path: Path) -> None:
+    """1e-12 A/V are left where the conductance of the resistor and its loss in the loop cancel."""
+    model = modelfile.parse(CLIPPER.encode(), "m.toml")
+    wanted = ("linearize", "forward_dynamics_derivatives", "inverse_dynamics_derivatives")
+    status, lines = run(build(render(model, name="m", only=wanted, tests=True), "m", tmp_path))
+    assert status == 0, lines
+    assert len(lines) == 4
+
+
+def test_no_entry_is_hidden_by_loud_states() -> None:
+    """They have a scale of their own, never less than that of the others."""
+    vectors = found("ring_modulator")
+    values = vectors.values["h"]
+    assert vectors.states == 10 + vectors.loud
+    assert len(values.loud) == vectors.loud > 0
+    assert max(values.loud[0]) > 1e6 * max(values.scale)
+    assert all(x >= y for loud in values.loud for x, y in zip(loud, values.scale, strict=True))
+    assert found("double_pendulum").loud == 0
+
+
+def test_check_sees_the_current_of_a_diode(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same error in the emitted program, at the states that `check` draws."""
+    derivation = lg.derive(modelfile.parse(CLIPPER.encode(), "m.toml"))
+    assert checking.check(derivation).good
+    right = checking._State.emitted
+
+    def off(state: Any, module: Any) -> Any:
+        M, h = right(state, module)
+        return M, [x * (1 + 1e-9) for x in h]
+
+    monkeypatch.setattr(checking._State, "emitted", off)
+    assert [c.what for c in checking.check(derivation).bad] == ["h"]
+
+
+def test_the_relief_valve_of_the_excavator_opens_at_some_state() -> None:
+    """Bounds in the model file lead its supply line above the pressure of the valve, and below."""
+    vectors = found("excavator_arm")
+    model = read("excavator_arm")
+    names = [x.name for x in lg.derive(model).structure.velocities]
+    line = [row[names.index("p_line")] for row in vectors.given["v"]]
+    assert 1 <= sum(p > 34e6 for p in line) < len(line)

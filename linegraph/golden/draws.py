@@ -17,6 +17,7 @@ from linegraph.checks import nearest
 from linegraph.closure import equations
 from linegraph.errors import ModelError
 from linegraph.golden.blame import undefined
+from linegraph.golden.loudness import CALM, acting, even, loudest, quietest
 from linegraph.golden.point import Kept, Point
 
 if TYPE_CHECKING:
@@ -39,12 +40,6 @@ DIGITS = 14
 
 REACHES = (1.0, 0.3, 0.1, 0.03)
 """How far states of networks and inputs are from zero; the first that will do."""
-
-EVEN = 300.0
-"""What acts in a network may be this much larger at one state than at most, and than very near zero."""
-
-CALM, QUIET = 12, 0.25
-"""How many states say what acts very near zero, and which part of them is quiet."""
 
 REGULAR = 1e4
 """Accelerations may be this much smaller than what they are made of; beyond, M is nearly singular."""
@@ -97,6 +92,9 @@ class Drawing:
     def points(self, count: int = STATES) -> list[Point]:
         """All states; those of networks so near zero that no exponential law dwarfs one state by another.
 
+        Where these had to be nearer zero than 1 there are more than `count`: one loud state from each reach
+        that was too far, at which diodes conduct.
+
         Raises:
             ModelError: a law is defined at no state that was tried, M is singular at all of them, or the
                 bounds name what does not exist.
@@ -106,35 +104,34 @@ class Drawing:
         if network is None:
             return [self._point(REACHES[0], k) for k in range(count)]
         points: list[Point] = []
+        loud: list[Point] = []
         calm = self._calm()
         for reach in REACHES:
             try:
-                found = [self._point(reach, k) for k in range(count)]
+                points = [self._point(reach, k) for k in range(count)]
             except ModelError:
-                if not points:
+                if points:
+                    return points + loud[:-1]
+                if reach == REACHES[-1]:
                     raise
-                return points
-            points = found
-            if _even(points, calm):
-                return points
-        return self._quietest(count)
+                continue  # nearer zero laws may be milder
+            if even(points, calm):
+                return points + loud
+            loud.append(replace(loudest(points), loud=True))
+        return self._quietest(count) + loud[:-1]
 
     def _calm(self) -> Any:
         """What acts in networks at states very near zero, a row each; no row where laws are not defined."""
         beside = replace(self, draw=random.Random(0), chosen=[{}], varied=False)
         try:
-            return _acting([beside._point(REACHES[-1], k) for k in range(1, CALM + 1)])
+            return acting([beside._point(REACHES[-1], k) for k in range(1, CALM + 1)])
         except ModelError:
             return []
 
     def _quietest(self, count: int) -> list[Point]:
         """Of states very near zero the least loud: sources are loud at some times, whatever the state."""
         found = [[self._point(REACHES[-1], k) for _ in range(CALM)] for k in range(count)]
-        np = found[0][0].walk.np
-        sizes = np.array([_acting(some) for some in found])
-        least = np.quantile(sizes, QUIET, axis=(0, 1))
-        loud = (sizes / np.where(least > 0, least, np.inf)).max(axis=2, initial=0.0)
-        return [some[k] for some, k in zip(found, loud.argmin(axis=1), strict=True)]
+        return quietest(found)
 
     def _require_known(self) -> None:
         """Refuse bounds of what the model does not have."""
@@ -200,7 +197,7 @@ class Drawing:
             within: the least value drawn, and how far states of networks and inputs reach.
             p: parameters that have not their own values, if any.
             rest: whether it is to be at rest.
-            slow: what velocities of mechanics are multiplied by.
+            slow: what velocities and states of networks are multiplied by.
 
         Returns:
             None where the loops do not close, or not within the bounds.
@@ -213,7 +210,8 @@ class Drawing:
         u = self._some(tree.inputs, bounds.inputs, (reach * low, reach), still=still)
         numeric = self.derivation.numeric(p, t, u)
         both = tree.velocities[:first], tree.velocities[first:]
-        states = self._some(both[1], bounds.velocities, (reach * low, reach))
+        # masses of networks have dry friction too
+        states = self._some(both[1], bounds.velocities, (slow * reach * low, slow * reach))
         v = self._some(both[0], bounds.velocities, (-slow, slow), still=rest)
         q = self._some(tree.positions, bounds.coordinates, (low, 1.0))
         if rest:
@@ -356,27 +354,6 @@ def _held(
     """Values moved into their bounds."""
     pairs = [(x, bounds.get(quantity.name)) for quantity, x in zip(quantities, values, strict=True)]
     return [x if bound is None else min(max(x, bound[0]), bound[1]) for x, bound in pairs]
-
-
-def _acting(points: Sequence[Point]) -> Any:
-    """How large what acts in networks is, a row for each state."""
-    np, first = points[0].walk.np, points[0].walk.tree.layout.mechanical
-    return np.array([np.abs(point.bodies.bias[0][first:]) for point in points])
-
-
-def _even(points: Sequence[Point], calm: Any) -> bool:
-    """Whether what acts in networks is of the same size at all states, more or less, and very near zero too.
-
-    An exponential law may be huge at all states alike, and then hides all that adds to it.
-    """
-    np, sizes = points[0].walk.np, _acting(points)
-    most = sizes.max(axis=0)
-    even = bool((most <= EVEN * np.median(sizes, axis=0)).all())
-    if not len(calm):
-        return even
-    # what is nothing near zero has a dead zone, and is to be seen beyond it
-    least = np.quantile(calm, QUIET, axis=0)
-    return even and bool((most <= EVEN * np.where(least > 0, least, np.inf)).all())
 
 
 def _at_rest(derivation: Derivation) -> list[float]:

@@ -109,6 +109,7 @@ def stepped(
     u: Sequence[Scalar] | None = None,
     t: Scalar | None = None,
     parameters: Mapping[str, Scalar] | None = None,
+    held: bool = False,
 ) -> Numeric:
     """The numeric reference for a state beside the real one, for inputs and parameters beside theirs.
 
@@ -119,6 +120,7 @@ def stepped(
         u: inputs; those of `numeric` if left out.
         t: the time; that of `numeric` if left out.
         parameters: values in place of those of `numeric`; what is derived from them is so again.
+        held: whether unknowns of algebraic loops stay what they are at the real state.
     """
     given = numeric.algebra.arguments
     tree, values = numeric.tree, numeric.parameters
@@ -135,18 +137,20 @@ def stepped(
     found = replace(numeric, tree=tree, algebra=algebra, parameters=values)
     if tree.network is None or not tree.network.loop:
         return found
-    algebra = Complexes(**algebra.arguments, loop=_loop(numeric, found, q, v))
+    algebra = Complexes(**algebra.arguments, loop=_loop(numeric, found, q, v, held=held))
     return replace(found, algebra=algebra)
 
 
 def _loop(
-    numeric: Numeric, beside: Numeric, q: Sequence[Scalar], v: Sequence[Scalar]
+    numeric: Numeric, beside: Numeric, q: Sequence[Scalar], v: Sequence[Scalar], *, held: bool
 ) -> list[complex]:
-    """The unknowns of an algebraic loop beside those of the real state: one step of Newton's."""
+    """The unknowns of an algebraic loop beside those of the real state: one step of Newton's, or none."""
     import numpy as np
 
     at = numeric.exchange([x.real for x in q], [x.real for x in v])
     assert at is not None
+    if held:
+        return [complex(x) for x in at.solved]
     network = at.network
     x = np.array(at.solved)
     moved: Any = Complexes(**beside.algebra.arguments, loop=list(at.solved))
