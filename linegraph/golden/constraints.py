@@ -57,10 +57,10 @@ class Constraints:
 
     @cached_property
     def position(self) -> Valued:
-        """φ; its entries are judged by how far unit velocities move them."""
+        """φ; its entries are judged by how far unit velocities would move one of their ends alone."""
         found = [row.position for row in self._holonomic()]
-        x, dx, _ = self.walk.parts(found)
-        return x[:, 0], self.walk.np.abs(dx[:, :-1]).sum(axis=1)
+        x, _, _ = self.walk.parts(found)
+        return x[:, 0], self.jacobian[1][: len(found)].sum(axis=1)
 
     def _holonomic(self) -> Iterator[Row]:
         for e in equations(self.walk.tree):

@@ -329,11 +329,17 @@ class Drawing:
     def _plain(self, count: int) -> list[float]:
         return [self._one((-1.0, 1.0), None) for _ in range(count)]
 
+    def _folding(self, point: Point) -> bool:
+        """Whether more moves there than elsewhere: a parallelogram laid flat has no one acceleration."""
+        return point.rank < self.derivation.assembled.rank
+
     def _defined(self, point: Point) -> bool:
         """Whether all is finite there, and accelerations are not what is left of far larger things."""
         np = point.walk.np
         # where M is singular everywhere, nothing that is emitted divides by it
         solving = not self.derivation.idle
+        if solving and self.derivation.structure.closed and self._folding(point):
+            return False
         for name, made in (pair for asked in self.chosen for pair in asked.items()):
             try:
                 value, size = made(point)

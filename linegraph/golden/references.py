@@ -237,14 +237,18 @@ def _v_projected(point: Point) -> Valued:
     return point.projected
 
 
+MISSES = 1e12
+"""What is left of gaps and slips at a legal state, times this, counts as their terms: so it is everywhere."""
+
+
 def _no_gap(point: Point) -> Valued:
     value, size = point.closed.position
-    return 0 * value, size
+    return 0 * value, size + MISSES * abs(value).max(initial=0.0)
 
 
 def _no_slip(point: Point) -> Valued:
     value, size = point.closed.rates
-    return 0 * value, size
+    return 0 * value, size + MISSES * abs(value).max(initial=0.0)
 
 
 REFERENCES: dict[str, Reference] = {

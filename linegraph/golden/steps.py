@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import cmath
 from dataclasses import replace
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from linegraph.errors import ModelError
@@ -55,8 +56,24 @@ class Complexes:
         return self.function("cos", x)
 
     def sqrt(self, x: Scalar) -> Scalar:
-        """Square root."""
-        return self.function("sqrt", x)
+        """Square root; within products that have a derivative it is that of `function`."""
+        return self.power(x, Fraction(1, 2))
+
+    def power(self, base: Scalar, exponent: Fraction) -> Scalar:
+        """A half-integer power: its derivative is finite where that of the root in it is not.
+
+        Raises:
+            ModelError: there is no such power, or its derivative is not finite.
+        """
+        z, count = complex(base), int(2 * exponent)
+        root = of_numbers("sqrt", z.real)
+        least = 2 if z.imag else 0
+        if root == 0 and count < least:
+            raise ModelError(
+                "", f"0**{exponent} has no finite {'derivative' if z.imag else 'value'}"
+            )
+        slope = count / 2 * root ** (count - 2) if z.imag else 0.0
+        return complex(root**count, slope * z.imag) if isinstance(base, complex) else root**count
 
     def function(self, name: str, *x: Scalar) -> Scalar:
         """Any function of `functions.ARITY`; at a kink one side of it.
@@ -72,6 +89,8 @@ class Complexes:
         real = of_numbers(name, *(part.real for part in z))
         if name in _OWN:
             return _OWN[name](*(x if name in ("min", "max") else z))
+        if z[0].imag and abs(z[0].real) == _STEEP.get(name):
+            raise ModelError("", f"{name}({z[0].real}) has no finite derivative")
         try:
             return complex(real, getattr(cmath, name)(*z).imag)
         except (ValueError, OverflowError):
@@ -99,6 +118,9 @@ _OWN: dict[str, Callable[..., complex]] = {
     "atan2": _angle,
 }
 """What has no continuation in `cmath`."""
+
+_STEEP = {"asin": 1.0, "acos": 1.0}
+"""Where, up to its sign, the slope of a function is infinite; a complex step makes a large number of it."""
 
 
 def stepped(
