@@ -53,6 +53,9 @@ APART = (0.8, 1.25)
 SLOW, SLOW_AT = 1e-3, 4
 """Velocities at one of the states are so small that dry friction has not yet risen; which state that is."""
 
+RATES = ("m/s", "rad/s")
+"""The units of velocities among the states of networks."""
+
 GAP = 1e-9
 """What constraints may miss, at most, in lengths and angles of size 1."""
 
@@ -197,7 +200,7 @@ class Drawing:
             within: the least value drawn, and how far states of networks and inputs reach.
             p: parameters that have not their own values, if any.
             rest: whether it is to be at rest.
-            slow: what velocities and states of networks are multiplied by.
+            slow: what velocities are multiplied by, those of masses in networks too.
 
         Returns:
             None where the loops do not close, or not within the bounds.
@@ -210,8 +213,10 @@ class Drawing:
         u = self._some(tree.inputs, bounds.inputs, (reach * low, reach), still=still)
         numeric = self.derivation.numeric(p, t, u)
         both = tree.velocities[:first], tree.velocities[first:]
+        states = self._some(both[1], bounds.velocities, (reach * low, reach))
         # masses of networks have dry friction too
-        states = self._some(both[1], bounds.velocities, (slow * reach * low, slow * reach))
+        free = [x.unit in RATES and x.name not in bounds.velocities for x in both[1]]
+        states = [short(slow * x) if can else x for x, can in zip(states, free, strict=True)]
         v = self._some(both[0], bounds.velocities, (-slow, slow), still=rest)
         q = self._some(tree.positions, bounds.coordinates, (low, 1.0))
         if rest:
