@@ -256,7 +256,9 @@ def _apply(op: str, operands: list[Scalar], algebra: Algebra) -> Scalar:
         return quotient(*operands)
     if op == "**":
         return power(operands[0], operands[1], algebra)
-    return algebra.sqrt(*operands) if op == "sqrt" else algebra.function(op, *operands)
+    if op == "sqrt" and hasattr(algebra, "root"):
+        return algebra.root(*operands)
+    return algebra.function(op, *operands)
 
 
 def _refuse_notation(text: str) -> None:

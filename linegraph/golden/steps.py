@@ -56,7 +56,11 @@ class Complexes:
         return self.function("cos", x)
 
     def sqrt(self, x: Scalar) -> Scalar:
-        """Square root; within products that have a derivative it is that of `function`."""
+        """Square root."""
+        return self.function("sqrt", x)
+
+    def root(self, x: Scalar) -> Scalar:
+        """Square root by itself; that of `function` may be a factor of what has a slope at zero."""
         return self.power(x, Fraction(1, 2))
 
     def power(self, base: Scalar, exponent: Fraction) -> Scalar:
