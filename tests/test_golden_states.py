@@ -267,7 +267,12 @@ effort = false
 """A parallelogram whose joints are all at zero where it lies flat: more motions are free there."""
 
 
-@pytest.mark.parametrize("text", [MISALIGNED, FLAT], ids=["misaligned", "flat"])
+TILTED = MISALIGNED.replace("axis = [0, 0, 1]\neffort", "axis = [9e-10, 0, 1]\neffort")
+LOCKED = MISALIGNED.replace("axis = [0, 0, 1]\neffort", "axis = [1e-5, 0, 1]\neffort")
+LOOPS = {"misaligned": MISALIGNED, "tilted": TILTED, "locked": LOCKED, "flat": FLAT}
+
+
+@pytest.mark.parametrize("text", LOOPS.values(), ids=LOOPS)
 def test_loops_that_miss_a_little_or_lie_flat_hold(text: str, tmp_path: Path) -> None:
     """What is left of lengths that cancel is judged beside these; flat positions are not asked."""
     model = modelfile.parse(text.encode(), "m.toml")

@@ -63,7 +63,7 @@ LITTLE = 0.1
 """What a parameter that is zero becomes, as a part of the least of its unit: inertias stay possible."""
 
 LOCKED = 1e-13
-"""Velocities that are this part of the largest are what rounding leaves of those that constraints lock."""
+"""Velocities of this part of the largest, or of 1, are what is left of those that constraints lock."""
 
 BESIDE = 0.02
 """How far guesses are from positions: so little that they lead to these, and to no other way to assemble."""
@@ -228,7 +228,7 @@ class Drawing:
                 q, found = list(self.derivation.assembled.q), [0.0] * len(found)
             v, states = found[:first], found[first:] if not rest else states
             fastest = max(map(abs, v), default=0.0)
-            v = [slow * x if abs(x) > LOCKED * fastest else 0.0 for x in v]
+            v = [slow * x if abs(x) > LOCKED * max(fastest, 1.0) else 0.0 for x in v]
             if not self._legal(numeric, q, [*v, *states]):
                 return None
         q, v = [short(x, 15) for x in q], [short(x, 15) for x in (*v, *states)]

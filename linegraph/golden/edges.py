@@ -13,6 +13,7 @@ from linegraph.body import GROUND, MASS_CENTER
 from linegraph.choices import GROUND_AXES, HEAD
 from linegraph.constraints.base import Constraint
 from linegraph.elements import Load
+from linegraph.golden.constraints import Constraints
 from linegraph.golden.cuts import Cuts, Pull
 from linegraph.golden.walk import own_rates
 from linegraph.jets import Jet, Jets, lifted
@@ -41,7 +42,12 @@ class Edges:
         np, pull = self.cuts.walk.np, self.cuts.joints[name]
         turn = np.eye(3) if axes == GROUND else self.cuts.place(axes).rotation
         both = np.concatenate([turn.T @ pull.force, turn.T @ pull.torque])
-        return both, pull.of_force, pull.of_torque
+        return both, self._doubt * pull.of_force, self._doubt * pull.of_torque
+
+    @cached_property
+    def _doubt(self) -> float:
+        """What sizes of reactions are multiplied by where ends of loops miss each other a little."""
+        return Constraints(self.cuts.walk).doubt
 
     @property
     def reactions(self) -> Valued:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from linegraph.golden.constraints import Constraints
+from linegraph.golden.constraints import MISSES, Constraints
 from linegraph.golden.operational import Operational
 from linegraph.vectors import RETURNED
 
@@ -235,10 +235,6 @@ def _v_kept(point: Point) -> Valued:
 
 def _v_projected(point: Point) -> Valued:
     return point.projected
-
-
-MISSES = 1e12
-"""What is left of gaps and slips at a legal state, times this, counts as their terms: so it is everywhere."""
 
 
 def _no_gap(point: Point) -> Valued:
