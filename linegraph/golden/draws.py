@@ -165,6 +165,8 @@ class Drawing:
                 slow = SLOW if place == SLOW_AT and attempt < TRIES // 2 else 1.0
                 p = self._parameters(varied=varied, zeros=attempt < TRIES // 4)
                 point = self._drawn((low, reach), p, rest=rest, slow=slow)
+                if rest and point is not None and self._folding(point):
+                    continue
                 if point is not None and self._defined(point):
                     return point
                 defined = defined or point is not None
@@ -336,15 +338,14 @@ class Drawing:
 
     def _folding(self, point: Point) -> bool:
         """Whether more moves there than elsewhere: a parallelogram laid flat has no one acceleration."""
-        return point.rank < self.derivation.assembled.rank
+        closed = self.derivation.structure.closed and not self.derivation.idle
+        return closed and point.rank < self.derivation.assembled.rank
 
     def _defined(self, point: Point) -> bool:
         """Whether all is finite there, and accelerations are not what is left of far larger things."""
         np = point.walk.np
         # where M is singular everywhere, nothing that is emitted divides by it
         solving = not self.derivation.idle
-        if solving and self.derivation.structure.closed and self._folding(point):
-            return False
         for name, made in (pair for asked in self.chosen for pair in asked.items()):
             try:
                 value, size = made(point)
