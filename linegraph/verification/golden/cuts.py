@@ -154,19 +154,20 @@ class Cuts:
         at = self.kinematics.frame(terminal)
         linear, angular = at.linear[:, :-1], at.angular[:, :-1]
         u, w = (np.linalg.norm(x, axis=0) for x in (linear, angular))
-        fast = float(w @ v)
-        pull, spin = at.pull + linear @ a, at.spin + angular @ a
+        # a point of an axis is still for its two distances from somewhere cancel
+        fast, far = float(w @ v), float(np.linalg.norm(at.origin))
+        turning = float(np.linalg.norm(at.spin) + w @ (np.abs(a) + of_a))
         return GroundPlace(
             at.rotation,
             at.origin,
             at.linear[:, -1],
             at.angular[:, -1],
-            pull,
-            spin,
-            float(u @ v + np.linalg.norm(at.linear[:, -1])),
+            at.pull + linear @ a,
+            at.spin + angular @ a,
+            float(u @ v + np.linalg.norm(at.linear[:, -1])) + fast * far,
             float(fast + np.linalg.norm(at.angular[:, -1])),
-            float(np.linalg.norm(at.pull) + u @ (np.abs(a) + of_a)),
-            float(np.linalg.norm(at.spin) + w @ (np.abs(a) + of_a)),
+            float(np.linalg.norm(at.pull) + u @ (np.abs(a) + of_a)) + (turning + fast**2) * far,
+            turning,
         )
 
     # -- bodies
