@@ -15,7 +15,7 @@ from systems.redundant_mechanisms import Pair, random_pair
 
 from linegraph import Model, derive
 from linegraph.dynamics.chords import equations
-from linegraph.emission import render
+from linegraph.emission.emit import render
 from linegraph.errors import ModelError
 from linegraph.readers import modelfile
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from linegraph.kinematics import KinematicTree
+    from linegraph.kinematics.links import KinematicTree
 
 COUNT = 1000
 FEW = range(0, COUNT, 37)

@@ -13,7 +13,7 @@ from conformance.test_golden import build, found, read, run
 from support.emitted import load
 
 import linegraph as lg
-from linegraph.emission import module_for, render
+from linegraph.emission.emit import module_for, render
 from linegraph.readers import modelfile
 from linegraph.verification import checking, golden
 from linegraph.verification.golden.draws import Drawing
