@@ -282,6 +282,12 @@ def test_a_joint_that_moves_nothing_is_named_and_one_that_moves_something_beyond
 def test_a_point_mass_on_the_axis_of_a_hinge_is_not_moved_by_it() -> None:
     point = {"inertia": (0, 0, 0), "center": (0, 0, 0.7)}
     assert idle(modelled((PLANE[0]._replace(**point),))) == ["j0"]
+    # on oblique axes rounding leaves an inertia, which is none beside the mass and its distance
+    for axis in ((1, 2, 3), (3, -1, 2), (1, 1, 1)):
+        center = tuple(0.7 * x for x in axis)
+        assert idle(modelled((PLANE[0]._replace(axis=axis, **point | {"center": center}),))) == [
+            "j0"
+        ]
     off = {"inertia": (0, 0, 0), "center": (1e-3, 0, 0.7)}
     assert idle(modelled((PLANE[0]._replace(**off),))) == []
 
@@ -307,6 +313,7 @@ def test_a_solid_link_has_inertia_in_every_direction() -> None:
     assert solid()
     assert not solid(mass=0.0)
     assert not solid(inertia=(0, 0.1, 0.1))  # a rod
+    assert not solid(inertia=(0, 0.1, 0.1), center=(0, 5.0, 0))  # and one that a hinge swings
     assert not solid(inertia=(-0.1, 0.1, 0.1))
     assert solid(center=(100.0, 0, 0))  # central inertias count, not those about the joint
 

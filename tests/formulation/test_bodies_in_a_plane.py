@@ -119,6 +119,8 @@ def test_a_relation_keeps_the_joints_whose_rates_it_names() -> None:
     assert related(model.system()) == {"ja", "jb"}
     model.formulation(coordinates="absolute-angle")
     assert set(formulated(model).level) == {"jc"}
+    model.formulation(coordinates="absolute")
+    assert formulated(model).absolute == ("c",)
 
 
 def test_on_a_body_in_free_flight_hinges_turn_in_space() -> None:

@@ -17,8 +17,9 @@ from support.chains import (
     poses,
     walked,
 )
-from support.rigid_motion import moving
+from support.rigid_motion import moving, of_quaternion, turned
 
+import linegraph as lg
 from linegraph.kinematics.accelerations import crossed_with, crossing, seen_near, spins
 from linegraph.kinematics.arms import arms
 from linegraph.kinematics.ground_frames import (
@@ -203,6 +204,33 @@ def test_angles_measured_from_ground_are_sums_of_the_hinges_angles() -> None:
         # a column is what the angle of one link against ground does to the last one's place
         J = np.array(matrix(columns(view, i), 3))
         close(J @ v, [*expected.linear, *expected.angular])
+
+
+def test_a_free_body_on_a_turntable_has_all_terms_of_coriolis() -> None:
+    """At constant velocities in its own axes a free body's velocity turns with it."""
+    model = lg.Model("turntable", gravity=(0, 0, 0))
+    table, ball = (model.body(x, mass=1.0, inertia=(1, 1, 1)) for x in ("table", "ball"))
+    model.revolute("hinge", between=("ground", table))
+    model.free("flight", between=(table, ball))
+    tree, floats = walked(model)
+    angle, rate, d = 0.4, 1.3, np.array([0.5, -0.2, 0.7])
+    turn = np.array([0.1, -0.5, 0.5, 0.7])
+    u, w = np.array([0.3, 0.8, -0.6]), np.array([-0.9, 0.4, 1.1])
+    crossed = arms(tree, floats, [angle, *d, *turn], [rate, *u, *w])
+    found = frames(tree, floats, crossed)[1]
+    H, R = turned((0, 0, 1), angle), of_quaternion(turn)
+    c = np.array([0, 0, rate])
+    velocity, bend = R @ u, R @ np.cross(w, u)
+    pull = H @ (bend + 2 * np.cross(c, velocity) + np.cross(c, np.cross(c, d)))
+    spin = H @ np.cross(c, R @ w)
+    close(found.linear, H @ (velocity + np.cross(c, d)))
+    close(found.angular, H @ (c + R @ w))
+    close(found.pull, pull)
+    close(found.spin, spin)
+    back = (H @ R).T
+    own = spins(tree, floats, crossed)[1]
+    close(own.linear, back @ pull)
+    close(own.angular, back @ spin)
 
 
 def test_ground_is_a_frame_at_rest() -> None:

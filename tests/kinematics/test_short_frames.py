@@ -43,12 +43,26 @@ OBLIQUE = (
     Part("revolute", near=((0.1, 0, 0.5), (0, 1, 0.2), -0.6), parent=1),
 )
 
-CHAINS = {"limb": LIMB, "long": LONG, "oblique": OBLIQUE}
+CROSS = (
+    Part("revolute", (0, 3, 4), ((0.1, 0.2, 0), (1, 0, 0), 0.3)),
+    Part(
+        "universal",
+        ((1, 0, 0), (0, 1, 0)),
+        ((0.3, -0.1, 0.2), (0, 1, 0), 0.7),
+        ((0.1, 0.2, -0.1), (1, 0, 1), -0.4),
+        forward=False,
+        parent=0,
+    ),
+    Part("revolute", (2, -1, 2), ((0.2, 0.5, -0.3), (0, 0, 1), 0.6), parent=1),
+)
+"""A universal joint against its edge: the axes of its last part are not those of the joint."""
+
+CHAINS = {"cross": CROSS, "limb": LIMB, "long": LONG, "oblique": OBLIQUE}
 
 
 def state(name: str) -> tuple[Any, Any]:
     rng = np.random.default_rng(5)
-    n = {"limb": 7, "long": 6, "oblique": 3}[name]
+    n = {"limb": 7, "long": 6, "oblique": 3, "cross": 4}[name]
     return rng.uniform(-1, 1, n), rng.uniform(-1, 1, n)
 
 

@@ -87,18 +87,19 @@ def test_a_coordinate_that_is_none_cannot_be_held() -> None:
         searched(four_bar(), {"c": 0.1})
 
 
-def test_a_hinge_is_not_closed_the_wrong_way_round() -> None:
-    """The start turns the axis nearly over, where the equations of axes hold as well."""
+def test_a_hinge_turned_over_does_not_count_as_closed() -> None:
     model = lg.Model("flip")
     a, b = (model.body(x, mass=1.0, mass_center=(0.1, 0, 0), inertia=(1, 1, 1)) for x in "ab")
     model.revolute("first", between=("ground", a), axis=(1, 0, 0))
     model.revolute("second", between=(a, b), axis=(0, 1, 0), start=3.0)
     model.revolute("last", between=("ground", b), axis=(1, 0, 0))
     model.formulation(tree=("first", "second"))
-    found = of(model)
-    q = found.assembled.q
-    # the head's x along the tail's: no turn about y but full ones
-    assert math.cos(q[1]) == pytest.approx(1, abs=1e-12)
+    search = searched(model)
+    # half a turn about y has the axes in line, but against each other
+    assert search._flipped([0.4, math.pi])
+    assert not search._flipped([0.4, 0.0])
+    # the start is nearly there, and yet the search ends at no turn but full ones
+    assert math.cos(search.position(None)[1]) == pytest.approx(1, abs=1e-12)
 
 
 def test_jacobian_and_rates_are_in_pure_numbers_without_what_is_held() -> None:
