@@ -143,6 +143,10 @@ def test_a_coupled_body_keeps_its_joint_where_all_others_are_absolute() -> None:
     found = formulated(model)
     assert found.absolute == ("c",)
     assert found.joints == {"ja", "jb"}
+    # asked for by name it is not spared, and cannot be both
+    model.formulation(coordinates="joint", of_body={"b": "absolute"})
+    with pytest.raises(lg.ModelError, match="coupled joints have to be branches"):
+        formulated(model)
 
 
 def test_a_body_that_nothing_holds_is_refused_and_a_rod_does_not_hold_it() -> None:

@@ -17,7 +17,7 @@ from support.chains import (
     poses,
     walked,
 )
-from support.rigid_motion import moving, of_quaternion, turned
+from support.rigid_motion import TINY, axial, moving, of_quaternion, turned
 
 import linegraph as lg
 from linegraph.kinematics.accelerations import crossed_with, crossing, seen_near, spins
@@ -204,6 +204,38 @@ def test_angles_measured_from_ground_are_sums_of_the_hinges_angles() -> None:
         # a column is what the angle of one link against ground does to the last one's place
         J = np.array(matrix(columns(view, i), 3))
         close(J @ v, [*expected.linear, *expected.angular])
+
+
+def test_an_orientation_in_space_is_seen_from_the_parent_as_its_hinge_turns() -> None:
+    parts = (PLANE[0], PLANE[1]._replace(axis=(1, 0, 0)), PLANE[2])
+    model = modelled(parts)
+    model.formulation(coordinates="absolute-angle")
+    tree, floats = walked(model)
+    own, rates = np.array([0.4, -0.9, 0.5]), np.array([0.7, 0.3, -1.2])
+    q, v = [own[0]], [rates[0]]
+    ahead = poses(parts, own + 1j * TINY * rates)
+    half = np.array([[0, 0, np.sin(x / 2), np.cos(x / 2)] for x in own])
+    half[1] = half[1][[2, 1, 0, 3]]  # about x
+    quaternion = half[0]
+    for k in (1, 2):
+        a, b = quaternion, half[k]
+        vector = a[3] * b[:3] + b[3] * a[:3] + np.cross(a[:3], b[:3])
+        quaternion = np.array([*vector, a[3] * b[3] - a[:3] @ b[:3]])
+        turn = ahead[k][:3, :3]
+        np.testing.assert_allclose(of_quaternion(quaternion), turn.real, atol=1e-15)
+        q += quaternion.tolist()
+        v += axial(turn.real.T @ turn.imag / TINY).tolist()
+    crossed = arms(tree, floats, q, v)
+    found = frames(tree, floats, crossed)
+    before = np.eye(3)
+    for i in range(3):
+        expected = moving(lambda t, i=i: link_poses(tree, poses(parts, own + rates * t))[i])  # type: ignore[misc]
+        close(crossed[i].rotation.matrix(), before.T @ expected.rotation)
+        close(found[i].rotation, expected.rotation)
+        close(found[i].origin, expected.place)
+        close(found[i].linear, expected.linear)
+        close(found[i].angular, expected.angular)
+        before = expected.rotation
 
 
 def test_a_free_body_on_a_turntable_has_all_terms_of_coriolis() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -55,6 +56,21 @@ def test_welded_bodies_are_one_link_with_the_sum_of_their_moments() -> None:
     assert tree.bodies["block"][0] == tree.bodies["plate"][0] == 0
     assert tree.bodies["block"][1].at == (1, 0, 0)
     assert tree.bodies["wall"] == (-1, ((0, 3, 0), ((1, 0, 0), (0, 1, 0), (0, 0, 1))))
+
+
+def test_a_weld_by_a_turned_frame_of_the_far_body_turns_that_body_back() -> None:
+    model = welded()
+    lamp = model.body("lamp", mass=1.0, mass_center=(0, 0.4, 0))
+    foot = lamp.frame("foot", at=(0.1, 0, 0), axis=(0, 0, 1), angle=math.pi / 2)
+    model.fixed("screw", between=("plate.tip", foot))
+    tree, _ = walked(model)
+    link, own = tree.bodies["lamp"]
+    assert link == 0
+    # the foot's x is the lamp's y: the plate's x is the lamp's y, and the plate's -y its x
+    assert own.rotation == ((0, 1, 0), (-1, 0, 0), (0, 0, 1))
+    np.testing.assert_allclose(own.at, (1, 0.1, 0), atol=4e-16)
+    # 2.1 of plate and block, and the lamp's centre at (1, 0.1) + (0.4, 0)
+    np.testing.assert_allclose(tree.links[0].moments.first, (3.5, 0.1, 0), atol=1e-15)
 
 
 def test_a_links_own_frame_has_its_joint_at_the_origin_and_the_axis_as_z() -> None:

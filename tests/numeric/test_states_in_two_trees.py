@@ -156,6 +156,16 @@ def test_a_value_that_is_missing_and_inputs_too_few_are_refused() -> None:
         derived(pendulum(), Derived).numeric(u=[1.0, 2.0])
 
 
+def test_what_divides_by_a_singular_mass_matrix_is_refused_and_else_let_pass() -> None:
+    derived(pendulum(), Derived).require_inverse("rhs")
+    model = pendulum()
+    model.revolute("loose", between=("bob", model.body("nothing")))
+    with pytest.raises(lg.ModelError, match="moves no inertia of its own") as told:
+        derived(model, Derived).require_inverse("rhs")
+    assert told.value.thing == 'joint "loose"'
+    assert "rhs divides by it" in told.value.problem
+
+
 def test_at_another_time_what_is_prescribed_has_moved_on() -> None:
     model = four_bar()
     flag = model.body("flag", mass=1.0, inertia=(1, 1, 1))
