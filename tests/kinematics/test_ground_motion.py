@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from support.chains import (
     poses,
     walked,
 )
-from support.rigid_motion import TINY, axial, moving, of_quaternion, turned
+from support.rigid_motion import TINY, axial, moving, of_quaternion, pose, turned, undone
 
 import linegraph as lg
 from linegraph.kinematics.accelerations import crossed_with, crossing, seen_near, spins
@@ -40,6 +41,7 @@ from linegraph.kinematics.twists import (
     position,
     velocities,
 )
+from linegraph.kinematics.working_frames import shortened
 
 Q, V = LIMB_STATE
 A = np.array([0.5, -1.2, 0.9, 0.2, -0.6, 1.4, 0.3])
@@ -100,8 +102,8 @@ def test_a_joint_crossed_in_the_near_links_axes_gives_the_same_vectors(i: int) -
 
 def test_a_place_on_a_body_moves_with_it() -> None:
     place, axes = (0.3, -0.1, 0.7), ((0, -1, 0), (1, 0, 0), (0, 0, 1))
-    link, pose = TREE.bodies["b4"]
-    body = seated(frames(TREE, FLOATS, CROSSED), Seat(link, pose.at, pose.rotation))
+    link, seat = TREE.bodies["b4"]
+    body = seated(frames(TREE, FLOATS, CROSSED), Seat(link, seat.at, seat.rotation))
     found = body.at(place, axes)
     fixed = np.eye(4)
     fixed[:3, :3], fixed[:3, 3] = axes, place
@@ -204,6 +206,45 @@ def test_angles_measured_from_ground_are_sums_of_the_hinges_angles() -> None:
         # a column is what the angle of one link against ground does to the last one's place
         J = np.array(matrix(columns(view, i), 3))
         close(J @ v, [*expected.linear, *expected.angular])
+
+
+def test_driven_joints_add_what_their_motions_prescribe() -> None:
+    """The first and last hinges and the slide follow functions of t, in short frames as well."""
+    model = driven_limb()
+    tree, floats = walked(model, t=0.7)
+    free = [2, 3, 4, 5]
+
+    def coordinates(t: Any) -> Any:
+        """The whole state around the time 0.7: driven coordinates as given, others at constant rates."""
+        at, now = Q + V * t, 0.7 + t
+        return np.array([0.4 * now**3, 0.2 * np.sin(3 * now), *at[2:6], now**2 / 2])
+
+    short = shortened(tree)
+    bodies = poses(LIMB, Q)
+    for given in (tree, short.tree):
+        crossed = arms(given, floats, Q[free], V[free])
+        view = Outlook(given, floats, crossed)
+        for k, link in enumerate(link_poses(tree, bodies)):
+            tip, inner = k, np.eye(4)
+            if given is short.tree:
+                tip, at = short.places[k], short.poses[k]
+                inner = pose(np.array(at.rotation), np.array(at.at))
+            fixed = undone(bodies[k]) @ link @ inner
+            expected = moving(lambda t, k=k, fixed=fixed: poses(LIMB, coordinates(t))[k] @ fixed)  # type: ignore[misc]
+            close(position(view, tip), expected.place, 1e-14)
+            for linear, angular in velocities(view, tip):
+                close(linear, expected.linear, 1e-14)
+                close(angular, expected.angular, 1e-14)
+            for linear, angular in accelerations(view, tip):
+                close(linear, expected.pull, OF_DIFFERENCES)
+                close(angular, expected.spin, OF_DIFFERENCES)
+
+
+def driven_limb() -> lg.Model:
+    model = modelled(LIMB)
+    for name, motion in (("j0", "0.4*t**3"), ("j1", "0.2*sin(3*t)"), ("j4", "t**2/2")):
+        model._joints[name] = replace(model._joints[name], drive=motion)
+    return model
 
 
 def test_an_orientation_in_space_is_seen_from_the_parent_as_its_hinge_turns() -> None:

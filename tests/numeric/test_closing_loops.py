@@ -45,6 +45,44 @@ def test_with_the_crank_held_the_loop_closes_where_the_law_of_cosines_says(a: fl
     assert min(turns) < 1e-12
 
 
+def slider_crank(crank: float = 3.0, rod: float = 8.0) -> lg.Model:
+    """A crank and a rod on a slide along x; the pin between rod and slide is the chord."""
+    model = lg.Model("slider_crank")
+    parts = [model.body(n, mass=1.0, mass_center=(1, 0, 0)) for n in ("crank", "rod", "piston")]
+    model.revolute("a", between=("ground", parts[0]))
+    model.revolute("b", between=(parts[0].frame("tip", at=(crank, 0, 0)), parts[1]))
+    model.prismatic("x", between=("ground", parts[2]), axis=(1, 0, 0))
+    model.revolute("c", between=(parts[1].frame("tip", at=(rod, 0, 0)), parts[2]))
+    model.formulation(tree=("a", "b", "x"))
+    return model
+
+
+def test_a_slide_is_measured_by_the_length_of_its_loop() -> None:
+    search = searched(slider_crank(), {"a": 0.7})
+    # metres count by the loop's 3 + 8 m, so that one step suits angles and shifts alike
+    assert search.of_positions == [1, 1, 11]
+    q = search.position([0.7, -0.5, 8.0])
+    expected = 3 * math.cos(0.7) + math.sqrt(64 - (3 * math.sin(0.7)) ** 2)
+    assert q[2] == pytest.approx(expected, abs=1e-11)
+    # far from closed, the steps still arrive: those of a loop of kilometres, too
+    far = searched(slider_crank(3e3, 8e3), {"a": 0.7})
+    q = [0.7, -0.5, 5.0]
+    assert far.close(q) < 1e-12
+    assert q[2] == pytest.approx(1e3 * expected, rel=1e-11)
+
+
+def test_start_values_of_hinges_are_added_where_angles_are_measured_from_ground() -> None:
+    model = lg.Model("levels")
+    before: Any = model.ground
+    for k, start in enumerate((0.3, -0.5, 0.9)):
+        body = model.body(f"b{k}", mass=1.0, mass_center=(1, 0, 0))
+        model.revolute(f"j{k}", between=(before, body), start=start)
+        before = body
+    assert searched(model)._start() == pytest.approx([0.3, -0.5, 0.9])
+    model.formulation(coordinates="absolute-angle")
+    assert searched(model)._start() == pytest.approx([0.3, -0.2, 0.7])
+
+
 def test_a_start_chooses_between_two_ways_to_close_a_loop() -> None:
     search = searched(four_bar(), {"a": 0.7})
     for sign in (1, -1):
