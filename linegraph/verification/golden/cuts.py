@@ -1,13 +1,12 @@
 """What acts in every joint, from accelerations and multipliers: joints cut, equations of bodies written.
 
-A cut through a branch of the tree frees all bodies beyond it. By Newton and Euler the joint exerts on them
+A cut through a branch frees all bodies beyond it. By Newton and Euler the joint exerts on them
 
     Σ (what their motion needs, weight taken off) - Σ (what elements, loads and chords exert on them)
 
 A chord exerts its multipliers along its reaction directions, which are the derivatives of its equations by
-the place of its head: virtual work. Bodies are those of the model, each with its own mass, and places and
-accelerations are derivatives of where they are (`walk`). Shared with the emitted program are the laws of
-elements, loads and networks, in numbers, and along what a joint's effort acts.
+the place of its head: virtual work. Bodies have their own masses, accelerations are derivatives of places
+(`walk`). Shared with the emitted program are the laws of elements, and along what a joint's effort acts.
 """
 
 from __future__ import annotations
