@@ -49,6 +49,7 @@ def in_c(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
         real=options.real,
         width=max(24, *(len(x.label) for x in vectors.expected)),
         states=vectors.states,
+        loud=vectors.loud,
         double=number(DOUBLE),
         single=number(SINGLE),
         about=block(_about(module, vectors, options)),
@@ -59,7 +60,12 @@ def in_c(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
         ],
         parameters=vectors.parameters,
         values=[
-            (key, math.prod(v.shape), _lines(x for row in v.rows for x in row), _lines(v.scale))
+            (
+                key,
+                math.prod(v.shape),
+                _lines(x for row in v.rows for x in row),
+                _lines(x for row in v.scales for x in row),
+            )
             for key, v in vectors.values.items()
             if math.prod(v.shape)
         ],
@@ -122,10 +128,12 @@ def _called_in_c(
 def in_python(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
     """The same for `python.render`."""
     del options  # functions of many states are there in any case
+    scales = (1 + vectors.loud,) if vectors.loud else ()
     text = templates.fill(
         "python/golden.py.jinja",
         name=module.name,
         states=vectors.states,
+        loud=vectors.loud,
         tolerance=number(DOUBLE),
         about=[line.replace("\\", "/") for line in _about(module, vectors, DEFAULT)],
         given=[
@@ -140,9 +148,9 @@ def in_python(module: Module, vectors: Vectors, options: Options) -> dict[str, s
             (
                 key,
                 f"({', '.join(map(str, (vectors.states, *v.shape)))})",
-                f"({', '.join(map(str, v.shape))},)",
+                f"({', '.join(map(str, (*scales, *v.shape)))},)",
                 _lines(x for row in v.rows for x in row),
-                _lines(v.scale),
+                _lines(x for row in v.scales for x in row),
             )
             for key, v in vectors.values.items()
         ],

@@ -6,6 +6,7 @@ Everything else is imported inside `main`, so that an interrupt is one wherever 
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import signal
 import sys
@@ -20,11 +21,14 @@ def main() -> None:
     """
     if hasattr(signal, "SIGPIPE"):
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    written = _opened()
     try:
         from linegraph.cli.main import run
 
         status = run()
         sys.stdout.flush()
+        if not written and status == 0:
+            raise OSError(errno.EBADF, "it is closed")
     except KeyboardInterrupt:
         status = INTERRUPTED
         _tell("interrupted")
@@ -40,6 +44,20 @@ def main() -> None:
             f"{traceback.format_exc()}error: this is a fault of linegraph: please report the model"
         )
     _leave(status)
+
+
+def _opened() -> bool:
+    """Put the null device in the place of standard streams that are closed, or files would take it.
+
+    Returns:
+        Whether what is printed goes anywhere.
+    """
+    written = getattr(sys, "stdout", None) is not None
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name, None) is None:
+            stream = os.fdopen(os.open(os.devnull, os.O_RDWR), mode, encoding="utf-8")
+            setattr(sys, name, stream)
+    return written
 
 
 def _tell(text: str) -> None:

@@ -27,7 +27,7 @@ Symbol = tuple[str, Any]
 
 Gradient = dict[Symbol, "Scalar"]
 
-SMALLEST = 1e-300
+SMALLEST = 1e-37
 """Keeps a quotient of zeros zero."""
 
 

@@ -256,6 +256,8 @@ def _apply(op: str, operands: list[Scalar], algebra: Algebra) -> Scalar:
         return quotient(*operands)
     if op == "**":
         return power(operands[0], operands[1], algebra)
+    if op == "sqrt" and hasattr(algebra, "root"):
+        return algebra.root(*operands)
     return algebra.function(op, *operands)
 
 

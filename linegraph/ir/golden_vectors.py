@@ -19,12 +19,19 @@ class Values:
         shape: of the result at one state.
         rows: its entries at each state, row-major.
         scale: for each entry how large what it is made of gets over all states: what an error is compared
-            with.
+            with; over all but the last states where these are loud.
+        loud: the same for each loud state alone: there is one for each of the last states.
     """
 
     shape: tuple[int, ...]
     rows: tuple[Row, ...]
     scale: Row
+    loud: tuple[Row, ...] = ()
+
+    @property
+    def scales(self) -> tuple[Row, ...]:
+        """The scale of all states that are not loud, and those of the loud ones."""
+        return (self.scale, *self.loud)
 
 
 CONSTANTS = "c"
@@ -91,3 +98,8 @@ class Vectors:
     expected: tuple[Expected, ...]
     untested: tuple[tuple[str, str], ...]
     parameters: tuple[str, ...] = ()
+
+    @property
+    def loud(self) -> int:
+        """How many states are loud, the last ones."""
+        return len(next(iter(self.values.values())).loud) if self.values else 0

@@ -16,7 +16,7 @@ from support.modelfile_text import SMALL
 
 from linegraph import LinegraphError
 from linegraph.errors import DeviceFailed
-from linegraph.exits import BROKEN, INTERRUPTED, IO_FAILED
+from linegraph.exits import BROKEN, INTERRUPTED, IO_FAILED, WRONG
 from linegraph.files import STAGED, is_stream, write_all, write_file
 
 ROOT = Path(__file__).parents[2]
@@ -145,6 +145,26 @@ def test_help_and_schema_on_a_full_device() -> None:
             done = run(*arguments, stdout=full.fileno())
         assert done.returncode == IO_FAILED, arguments
         assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("closed", [">&-", ">&- 2>&-", "<&- >&- 2>&-", "2>&-", "<&-"])
+def test_closed_standard_streams_are_no_failed_check(
+    closed: str, model: Path, tmp_path: Path
+) -> None:
+    """What is written to files is whole; what was to be printed could not be."""
+    out = tmp_path / "graph.svg"
+    line = f'"$@" {closed}'
+    command = ["sh", "-c", line, "sh", *MODULE, "graph", str(model), "--output", str(out)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == (0 if closed in ("2>&-", "<&-") else IO_FAILED)
+    told = "error: cannot write to standard output: it is closed\n"
+    assert done.stderr == (told if closed == ">&-" else "")
+    text = out.read_text("utf-8")
+    assert text.startswith("<svg")
+    assert text.rstrip().endswith("</svg>")
+    wrong = ["sh", "-c", line, "sh", *MODULE, "show", "nofile.toml"]
+    done = subprocess.run(wrong, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == WRONG
 
 
 @FULL

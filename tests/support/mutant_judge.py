@@ -51,6 +51,9 @@ NAME = "mutated"
 EQUIVALENT, ROUNDING = 1e-15, 1e-12
 """Differences up to these parts of the terms are none, and below rounding."""
 
+LOUD = " at loud states"
+"""How the labels of results at states end where steep laws act far more than at others."""
+
 STATUS = ".status"
 """How the labels of statuses end."""
 
@@ -272,24 +275,27 @@ def largest(
 ) -> dict[int, tuple[float, str]]:
     """For each mutant the largest relative difference from the original, and where that is.
 
-    Relative as golden vectors are: to the largest values that an entry is made of over all states, these too.
+    Relative as golden vectors are: to the largest values that an entry is made of over all states, these too;
+    at loud states apart from others.
     """
     sizes = {key: np.array(values.scale) for key, values in subject.vectors.values.items()}
     apart: dict[int, dict[tuple[str, str], tuple[Array, Array]]] = {k: {} for k in numbers}
     for place, point in enumerate(points):
         right = list(beside.results(0, point, numbers))
+        among = LOUD * point.loud
         for label, key, x in right:
-            known = sizes.get(key or label, 0.0)
-            sizes[key or label] = np.maximum(known, np.where(np.isfinite(x), np.abs(x), 0.0))
+            calm = sizes.get(key or label, 0.0)
+            known = sizes.get((key or label) + among, calm)
+            size = np.maximum(known, np.where(np.isfinite(x), np.abs(x), 0.0))
+            sizes[(key or label) + among] = size
         for number in numbers:
             others = {label: x for label, _, x in beside.results(number, point, [number])}
             for label, key, x in right:
                 if label in others:  # else a status before it differs, and that counts
-                    most, where = apart[number].get(
-                        (label, key), (np.zeros(len(x)), np.zeros(len(x)))
-                    )
+                    pair = (label + among, key and key + among)
+                    most, where = apart[number].get(pair, (np.zeros(len(x)), np.zeros(len(x))))
                     error = _error(x, others[label])
-                    apart[number][label, key] = (
+                    apart[number][pair] = (
                         np.maximum(most, error),
                         np.where(error > most, place, where),
                     )

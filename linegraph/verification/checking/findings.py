@@ -95,18 +95,20 @@ class Tally:
 
     Attributes:
         names: what the entries of a quantity are called, by quantity.
+        loud: the number of the loud state that is noted, if it is one: its scale is its own.
     """
 
     names: Mapping[str, Sequence[str]] = field(default_factory=dict)
-    _errors: dict[tuple[str, str], Any] = field(default_factory=dict)
-    _scales: dict[tuple[str, str], Any] = field(default_factory=dict)
+    loud: int | None = None
+    _errors: dict[tuple[str, str, int | None], Any] = field(default_factory=dict)
+    _scales: dict[tuple[str, str, int | None], Any] = field(default_factory=dict)
 
     def note(
         self, group: str, what: str, found: Any, expected: Any, size: Any, *, alone: bool = False
     ) -> None:
         """A quantity at a state: by a route, as expected, and how large what it is made of is.
 
-        With `alone` it is compared on the scale of this state, else on that of all states.
+        With `alone` it is compared on the scale of this state, else on that of all states that are not loud.
         """
         import numpy as np
 
@@ -118,7 +120,7 @@ class Tally:
         if alone:
             error = np.where(error == 0, 0.0, error / np.where(scale > 0, scale, _LEAST))
             scale = np.ones(len(error))
-        key = (group, what)
+        key = (group, what, self.loud)
         if key in self._errors and len(self._errors[key]) == len(error):
             error = np.maximum(error, self._errors[key])
             scale = np.maximum(scale, self._scales[key])
@@ -128,16 +130,27 @@ class Tally:
         """All quantities, in the order in which they were met."""
         import numpy as np
 
-        found = []
-        for (group, what), errors in self._errors.items():
-            scales = self._scales[(group, what)]
-            if len(scales) != len(errors):
-                found.append(Comparison(group, what, float("inf")))
-                continue
-            # what is made of nothing is zero
-            ratios = np.where(errors == 0, 0.0, errors / np.where(scales > 0, scales, _LEAST))
-            worst = float(ratios.max(initial=0.0))
-            place = int(ratios.argmax()) if len(ratios) else 0
-            names = self.names.get(what, ())
-            found.append(Comparison(group, what, worst, names[place] if place < len(names) else ""))
-        return tuple(found)
+        found: dict[tuple[str, str], Comparison] = {}
+        for key, errors in self._errors.items():
+            group, what, _ = key
+            scales, calm = self._scales[key], self._scales.get((group, what, None))
+            if calm is not None and len(calm) == len(scales):
+                scales = np.maximum(scales, calm)
+            one = self._comparison(group, what, errors, scales)
+            known = found.setdefault((group, what), one)
+            if one.worst > known.worst:
+                found[group, what] = one
+        return tuple(found.values())
+
+    def _comparison(self, group: str, what: str, errors: Any, scales: Any) -> Comparison:
+        """One quantity at all states that have one scale."""
+        import numpy as np
+
+        if len(scales) != len(errors):
+            return Comparison(group, what, float("inf"))
+        # what is made of nothing is zero
+        ratios = np.where(errors == 0, 0.0, errors / np.where(scales > 0, scales, _LEAST))
+        worst = float(ratios.max(initial=0.0))
+        place = int(ratios.argmax()) if len(ratios) else 0
+        names = self.names.get(what, ())
+        return Comparison(group, what, worst, names[place] if place < len(names) else "")

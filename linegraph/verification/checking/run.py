@@ -62,8 +62,9 @@ def _check(derivation: Derived, seed: int) -> Findings:
     unjudged = _unjudged(derivation, moving=moving)
     driven, rows = _driven(derivation), equations(tree)
     function = loaded(derivation, module, "forward_dynamics") if tree.closed and moving else None
-    for point in points:
+    for place, point in enumerate(points):
         state = _State.at(point)
+        tally.loud = place if point.loud else None
         _equations(tally, state, point, module)
         if not moving:
             continue

@@ -25,6 +25,12 @@ if TYPE_CHECKING:
 
     Array = Any
 
+MISSES = 1e13
+"""What gaps are left at a legal state, times this, count as terms: ends that miss do so everywhere."""
+
+LEGAL = 1e-8
+"""Gaps from here on are those of states that close no loop."""
+
 
 @dataclass(frozen=True)
 class Constraints:
@@ -57,10 +63,10 @@ class Constraints:
 
     @cached_property
     def position(self) -> Valued:
-        """φ; its entries are judged by how far unit velocities move them."""
+        """φ; its entries are judged by how far unit velocities would move one of their ends alone."""
         found = [row.position for row in self._holonomic()]
-        x, dx, _ = self.walk.parts(found)
-        return x[:, 0], self.walk.np.abs(dx[:, :-1]).sum(axis=1)
+        x, _, _ = self.walk.parts(found)
+        return x[:, 0], self.jacobian[1][: len(found)].sum(axis=1)
 
     def _holonomic(self) -> Iterator[ReactionRow]:
         for e in equations(self.walk.tree):
@@ -127,7 +133,21 @@ class Constraints:
         largest = np.abs(J).max(axis=1, initial=0.0)
         apart = [self._apart(equation) for equation in equations(self.walk.tree)]
         size = np.maximum(largest, np.array(apart).reshape(-1))
+        size = size * self.doubt
         return J, np.repeat(size, len(self.walk.v)).reshape(J.shape)
+
+    @cached_property
+    def doubt(self) -> float:
+        """By how much more than by rounding the ends of loops differ about directions, where they miss."""
+        apart = [self._apart(equation) for equation in equations(self.walk.tree)]
+        return 1 + MISSES * self._gap(self.walk.np.array(apart).reshape(-1))
+
+    def _gap(self, size: Array) -> float:
+        """The largest gap of a legal state, a pure number."""
+        x, _, _ = self.walk.parts([row.position for row in self._holonomic()])
+        np, known = self.walk.np, size[: len(x)]
+        gap = np.max(np.abs(x[:, 0]) / np.where(known > 0, known, np.inf), initial=0.0)
+        return float(gap) if gap < LEGAL else 0.0
 
     def _apart(self, equation: ChordEquation) -> float:
         """How far unit velocities would move a row if its ends did not move together."""

@@ -1,13 +1,12 @@
 """What acts in every joint, from accelerations and multipliers: joints cut, equations of bodies written.
 
-A cut through a branch of the tree frees all bodies beyond it. By Newton and Euler the joint exerts on them
+A cut through a branch frees all bodies beyond it. By Newton and Euler the joint exerts on them
 
     Σ (what their motion needs, weight taken off) - Σ (what elements, loads and chords exert on them)
 
 A chord exerts its multipliers along its reaction directions, which are the derivatives of its equations by
-the place of its head: virtual work. Bodies are those of the model, each with its own mass, and places and
-accelerations are derivatives of where they are (`walk`). Shared with the emitted program are the laws of
-elements, loads and networks, in numbers, and along what a joint's effort acts.
+the place of its head: virtual work. Bodies have their own masses, accelerations are derivatives of places
+(`walk`). Shared with the emitted program are the laws of elements, and along what a joint's effort acts.
 """
 
 from __future__ import annotations
@@ -154,19 +153,20 @@ class Cuts:
         at = self.kinematics.frame(terminal)
         linear, angular = at.linear[:, :-1], at.angular[:, :-1]
         u, w = (np.linalg.norm(x, axis=0) for x in (linear, angular))
-        fast = float(w @ v)
-        pull, spin = at.pull + linear @ a, at.spin + angular @ a
+        # a point of an axis is still for its two distances from somewhere cancel
+        fast, far = float(w @ v), float(np.linalg.norm(at.origin))
+        turning = float(np.linalg.norm(at.spin) + w @ (np.abs(a) + of_a))
         return GroundPlace(
             at.rotation,
             at.origin,
             at.linear[:, -1],
             at.angular[:, -1],
-            pull,
-            spin,
-            float(u @ v + np.linalg.norm(at.linear[:, -1])),
+            at.pull + linear @ a,
+            at.spin + angular @ a,
+            float(u @ v + np.linalg.norm(at.linear[:, -1])) + fast * far,
             float(fast + np.linalg.norm(at.angular[:, -1])),
-            float(np.linalg.norm(at.pull) + u @ (np.abs(a) + of_a)),
-            float(np.linalg.norm(at.spin) + w @ (np.abs(a) + of_a)),
+            float(np.linalg.norm(at.pull) + u @ (np.abs(a) + of_a)) + (turning + fast**2) * far,
+            turning,
         )
 
     # -- bodies

@@ -35,11 +35,16 @@ IDLE = 1e-2
 
 
 class _Slopes(NamedTuple):
-    """The derivatives of M (n x n x k), h and Q (n x k) by k variables."""
+    """The derivatives of M (n x n x k), h and Q (n x k) by k variables.
+
+    `terms` is how large what those of h and Q are made of is: what a diode does by itself, and what it does
+    as its voltage follows, may cancel.
+    """
 
     mass: Array
     bias: Array
     forces: Array
+    terms: Array
 
 
 @dataclass(frozen=True)
@@ -70,36 +75,52 @@ class Derivatives:
         dv: Sequence[float] = (),
         du: Sequence[float] = (),
         parameters: Mapping[str, complex] | None = None,
+        *,
+        held: bool = False,
     ) -> Walk:
-        """How everything moves a little further along a direction."""
+        """How everything moves a little further along a direction; unknowns of loops follow, or are held."""
         point = self.point
         q, v = _moved(point.q, dq), _moved(point.v, dv)
         u = _moved(point.u, du) if len(du) else None
-        numeric = stepped(point.walk.numeric, q, v, u=u, parameters=parameters)
+        numeric = stepped(point.walk.numeric, q, v, u=u, parameters=parameters, held=held)
         return Walk(numeric, q, v)
 
-    def _slopes(self, walks: Sequence[Walk], *, mass: bool = True, bias: bool = True) -> _Slopes:
-        """All by as many variables as there are walks; M and h may be known not to depend on them."""
-        np, n, k = self.point.walk.np, len(self.point.v), len(walks)
-        found = _Slopes(np.zeros((n, n, k)), np.zeros((n, k)), np.zeros((n, k)))
-        for i, bodies in enumerate(map(Bodies, walks)):
+    @property
+    def _follows(self) -> bool:
+        """Whether there are unknowns of an algebraic loop."""
+        network = self.point.walk.tree.network
+        return network is not None and bool(network.loop)
+
+    def _slopes(
+        self, steps: Sequence[Mapping[str, Any]], *, mass: bool = True, bias: bool = True
+    ) -> _Slopes:
+        """All by as many variables as there are steps; M and h may be known not to depend on them."""
+        np, n, k = self.point.walk.np, len(self.point.v), len(steps)
+        found = _Slopes(np.zeros((n, n, k)), *(np.zeros((n, k)) for _ in range(3)))
+        for i, step in enumerate(steps):
+            bodies = Bodies(self._beside(**step))
             if mass:
                 found.mass[:, :, i] = bodies.mass_matrix[0].imag / STEP
             if bias:
                 found.bias[:, i] = bodies.bias[0].imag / STEP
             found.forces[:, i] = bodies.forces[0].imag / STEP
+            if self._follows:
+                alone = Bodies(self._beside(**step, held=True))
+                own = (alone.bias[0] - alone.forces[0]).imag / STEP
+                whole = found.bias[:, i] - found.forces[:, i]
+                found.terms[:, i] = np.abs(own) + np.abs(whole - own)
         return found
 
     @cached_property
     def _by_changes(self) -> _Slopes:
-        return self._slopes([self._beside(dq=dq) for dq in self._motions.T])
+        return self._slopes([{"dq": dq} for dq in self._motions.T])
 
     @cached_property
     def _by_velocities(self) -> _Slopes:
         units = self.point.walk.np.eye(len(self.point.v))
         # only what networks store depends on velocities
         mass = self.point.walk.tree.network is not None
-        return self._slopes([self._beside(dv=dv) for dv in units], mass=mass)
+        return self._slopes([{"dv": dv} for dv in units], mass=mass)
 
     @cached_property
     def _by_inputs(self) -> _Slopes:
@@ -108,15 +129,14 @@ class Derivatives:
         tree = self.point.walk.tree
         driven = any(link.place.drive for link in tree.links) or any(c.drive for c in tree.closures)
         moving = driven or bool(tree.layout.named_inputs)
-        walks = [self._beside(du=du) for du in units]
-        return self._slopes(walks, mass=moving, bias=moving)
+        return self._slopes([{"du": du} for du in units], mass=moving, bias=moving)
 
     @cached_property
     def _by_parameters(self) -> _Slopes:
         values = self.point.walk.numeric.parameters
         names = [p.name for p in self.point.derivation.system.parameters.values() if not p.derived]
         steps = [{name: complex(values[name], STEP)} for name in names]
-        return self._slopes([self._beside(parameters=step) for step in steps])
+        return self._slopes([{"parameters": step} for step in steps])
 
     # -- of tau
 
@@ -124,7 +144,7 @@ class Derivatives:
         """∂(M a + h), for any a."""
         np = self.point.walk.np
         found = np.einsum("ijk,j->ik", by.mass, self.point.a) + by.bias
-        return found, self._sizes(found, self.point.inverse[1], unit)
+        return found, np.maximum(self._sizes(found, self.point.inverse[1], unit), by.terms)
 
     @property
     def tau_by_changes(self) -> Valued:
@@ -134,12 +154,21 @@ class Derivatives:
     @property
     def tau_by_velocities(self) -> Valued:
         """∂τ/∂v."""
-        return self._of_tau(self._by_velocities)
+        return self._of_tau(self._by_velocities, self._velocity_units)
 
     @property
     def tau_by_parameters(self) -> Valued:
         """∂τ/∂p."""
         return self._of_tau(self._by_parameters, self._parameter_units)
+
+    @cached_property
+    def _velocity_units(self) -> Array:
+        """For each velocity what its derivatives are counted in: by a unit, or by the most it may be."""
+        point = self.point
+        bounds = point.derivation.system.bounds.velocities
+        names = [x.name for x in point.walk.tree.velocities]
+        most = [max(map(abs, bounds.get(name, (1.0,)))) for name in names]
+        return point.walk.np.array([1 / max(1.0, x) for x in most])
 
     @cached_property
     def _parameter_units(self) -> Array:
@@ -174,7 +203,7 @@ class Derivatives:
         slopes = np.einsum("ijk,j->ik", by.mass, a) + by.bias - by.forces
         found = -inverse @ slopes
         size = self.point.force[1] + np.abs(M) @ np.abs(a)
-        of_slopes = self._sizes(slopes, size, unit)
+        of_slopes = np.maximum(self._sizes(slopes, size, unit), by.terms)
         parts = np.abs(inverse) @ (of_slopes + of_M @ np.abs(found))
         return found, np.maximum(parts, self._sizes(found, of_a, unit))
 
@@ -186,7 +215,7 @@ class Derivatives:
     @cached_property
     def motion_by_velocities(self) -> Valued:
         """∂v̇/∂v."""
-        return self._of_motion(self._by_velocities)
+        return self._of_motion(self._by_velocities, self._velocity_units)
 
     @cached_property
     def motion_by_inputs(self) -> Valued:
@@ -283,13 +312,20 @@ class Derivatives:
         force = bodies.forces[0] - bodies.bias[0] - M @ rest
         return v.imag / STEP, np.linalg.solve(T.T @ M @ T, T.T @ force).imag / STEP
 
-    def _of_independent(self, walks: Sequence[Walk], unit: Any = 1.0) -> tuple[Array, Valued]:
+    def _of_independent(
+        self, steps: Sequence[Mapping[str, Any]], unit: Any = 1.0
+    ) -> tuple[Array, Valued]:
         """The derivatives of v and of ẇ."""
         np, kept = self.point.walk.np, list(self.point.kept.velocities)
-        columns = [self._motion(walk) for walk in walks]
-        moved = np.array([v for v, _ in columns]).reshape(len(walks), len(self.point.v)).T
-        found = np.array([x for _, x in columns]).reshape(len(walks), len(kept)).T
-        return moved, (found, self._sizes(found, self.point.motion[0][1][kept], unit))
+        columns = [self._motion(self._beside(**step)) for step in steps]
+        moved = np.array([v for v, _ in columns]).reshape(len(steps), len(self.point.v)).T
+        found = np.array([x for _, x in columns]).reshape(len(steps), len(kept)).T
+        size = self._sizes(found, self.point.motion[0][1][kept], unit)
+        if self._follows:
+            alone = [self._motion(self._beside(**step, held=True))[1] for step in steps]
+            own = np.array(alone).reshape(len(steps), len(kept)).T
+            size = np.maximum(size, np.abs(own) + np.abs(found - own))
+        return moved, (found, size)
 
     @cached_property
     def _positions(self) -> Array:
@@ -306,8 +342,8 @@ class Derivatives:
         np, T, D = self.point.walk.np, self.point.reduction[0][0], self._positions
         free = list(self.point.kept.changes)
         along = self._motions @ D[: self._count]
-        walks = [self._beside(dq=dq) for dq in along.T] + [self._beside(dv=dv) for dv in T.T]
-        moved, (below, of_below) = self._of_independent(walks)
+        steps = [*({"dq": dq} for dq in along.T), *({"dv": dv} for dv in T.T)]
+        moved, (below, of_below) = self._of_independent(steps)
         moved[: self._count, : len(free)] += self._bracket @ D[: self._count]
         above = moved[free]
         # what is zero is left of velocities, and of their parts along unit changes
@@ -319,7 +355,7 @@ class Derivatives:
     def _by_inputs_on_constraints(self) -> Valued:
         np = self.point.walk.np
         units = np.eye(len(self.point.u))
-        _, (below, of_below) = self._of_independent([self._beside(du=du) for du in units], 0.0)
+        _, (below, of_below) = self._of_independent([{"du": du} for du in units], 0.0)
         # what a force along a velocity that is locked does is left of what locks it
         of_T, inertia = self.point.reduction[0][1], self.point.reduced[0][0]
         parts = np.abs(np.linalg.inv(inertia)) @ of_T.T @ np.abs(self._by_inputs.forces)

@@ -17,6 +17,7 @@ from linegraph.dynamics.chords import equations
 from linegraph.errors import ModelError
 from linegraph.numeric.assembly import consistent
 from linegraph.verification.golden.blame import undefined
+from linegraph.verification.golden.loudness import CALM, acting, even, loudest, quietest
 from linegraph.verification.golden.point import Kept, Point
 
 if TYPE_CHECKING:
@@ -40,12 +41,6 @@ DIGITS = 14
 REACHES = (1.0, 0.3, 0.1, 0.03)
 """How far states of networks and inputs are from zero; the first that will do."""
 
-EVEN = 300.0
-"""What acts in a network may be this much larger at one state than at most, and than very near zero."""
-
-CALM, QUIET = 12, 0.25
-"""How many states say what acts very near zero, and which part of them is quiet."""
-
 REGULAR = 1e4
 """Accelerations may be this much smaller than what they are made of; beyond, M is nearly singular."""
 
@@ -58,6 +53,9 @@ APART = (0.8, 1.25)
 SLOW, SLOW_AT = 1e-3, 4
 """Velocities at one of the states are so small that dry friction has not yet risen; which state that is."""
 
+RATES = ("m/s", "rad/s")
+"""The units of velocities among the states of networks."""
+
 GAP = 1e-9
 """What constraints may miss, at most, in lengths and angles of size 1."""
 
@@ -65,7 +63,7 @@ LITTLE = 0.1
 """What a parameter that is zero becomes, as a part of the least of its unit: inertias stay possible."""
 
 LOCKED = 1e-13
-"""Velocities that are this part of the largest are what rounding leaves of those that constraints lock."""
+"""Velocities of this part of the largest, or of 1, are what is left of those that constraints lock."""
 
 BESIDE = 0.02
 """How far guesses are from positions: so little that they lead to these, and to no other way to assemble."""
@@ -97,6 +95,9 @@ class Drawing:
     def points(self, count: int = STATES) -> list[Point]:
         """All states; those of networks so near zero that no exponential law dwarfs one state by another.
 
+        Where these had to be nearer zero than 1 there are more than `count`: one loud state from each reach
+        that was too far, at which diodes conduct.
+
         Raises:
             ModelError: a law is defined at no state that was tried, M is singular at all of them, or the
                 bounds name what does not exist.
@@ -106,35 +107,34 @@ class Drawing:
         if network is None:
             return [self._point(REACHES[0], k) for k in range(count)]
         points: list[Point] = []
+        loud: list[Point] = []
         calm = self._calm()
         for reach in REACHES:
             try:
-                found = [self._point(reach, k) for k in range(count)]
+                points = [self._point(reach, k) for k in range(count)]
             except ModelError:
-                if not points:
+                if points:
+                    return points + loud[:-1]
+                if reach == REACHES[-1]:
                     raise
-                return points
-            points = found
-            if _even(points, calm):
-                return points
-        return self._quietest(count)
+                continue  # nearer zero laws may be milder
+            if even(points, calm):
+                return points + loud
+            loud.append(replace(loudest(points), loud=True))
+        return self._quietest(count) + loud[:-1]
 
     def _calm(self) -> Any:
         """What acts in networks at states very near zero, a row each; no row where laws are not defined."""
         beside = replace(self, draw=random.Random(0), chosen=[{}], varied=False)
         try:
-            return _acting([beside._point(REACHES[-1], k) for k in range(1, CALM + 1)])
+            return acting([beside._point(REACHES[-1], k) for k in range(1, CALM + 1)])
         except ModelError:
             return []
 
     def _quietest(self, count: int) -> list[Point]:
         """Of states very near zero the least loud: sources are loud at some times, whatever the state."""
         found = [[self._point(REACHES[-1], k) for _ in range(CALM)] for k in range(count)]
-        np = found[0][0].walk.np
-        sizes = np.array([_acting(some) for some in found])
-        least = np.quantile(sizes, QUIET, axis=(0, 1))
-        loud = (sizes / np.where(least > 0, least, np.inf)).max(axis=2, initial=0.0)
-        return [some[k] for some, k in zip(found, loud.argmin(axis=1), strict=True)]
+        return quietest(found)
 
     def _require_known(self) -> None:
         """Refuse bounds of what the model does not have."""
@@ -165,6 +165,8 @@ class Drawing:
                 slow = SLOW if place == SLOW_AT and attempt < TRIES // 2 else 1.0
                 p = self._parameters(varied=varied, zeros=attempt < TRIES // 4)
                 point = self._drawn((low, reach), p, rest=rest, slow=slow)
+                if rest and point is not None and self._folding(point):
+                    continue
                 if point is not None and self._defined(point):
                     return point
                 defined = defined or point is not None
@@ -200,7 +202,7 @@ class Drawing:
             within: the least value drawn, and how far states of networks and inputs reach.
             p: parameters that have not their own values, if any.
             rest: whether it is to be at rest.
-            slow: what velocities of mechanics are multiplied by.
+            slow: what velocities are multiplied by, those of masses in networks too.
 
         Returns:
             None where the loops do not close, or not within the bounds.
@@ -214,6 +216,9 @@ class Drawing:
         numeric = self.derivation.numeric(p, t, u)
         both = tree.velocities[:first], tree.velocities[first:]
         states = self._some(both[1], bounds.velocities, (reach * low, reach))
+        # masses of networks have dry friction too
+        free = [x.unit in RATES and x.name not in bounds.velocities for x in both[1]]
+        states = [short(slow * x) if can else x for x, can in zip(states, free, strict=True)]
         v = self._some(both[0], bounds.velocities, (-slow, slow), still=rest)
         q = self._some(tree.positions, bounds.coordinates, (low, 1.0))
         if rest:
@@ -225,7 +230,7 @@ class Drawing:
                 q, found = list(self.derivation.assembled.q), [0.0] * len(found)
             v, states = found[:first], found[first:] if not rest else states
             fastest = max(map(abs, v), default=0.0)
-            v = [slow * x if abs(x) > LOCKED * fastest else 0.0 for x in v]
+            v = [slow * x if abs(x) > LOCKED * max(fastest, 1.0) else 0.0 for x in v]
             if not self._legal(numeric, q, [*v, *states]):
                 return None
         q, v = [short(x, 15) for x in q], [short(x, 15) for x in (*v, *states)]
@@ -331,6 +336,11 @@ class Drawing:
     def _plain(self, count: int) -> list[float]:
         return [self._one((-1.0, 1.0), None) for _ in range(count)]
 
+    def _folding(self, point: Point) -> bool:
+        """Whether more moves there than elsewhere: a parallelogram laid flat has no one acceleration."""
+        closed = self.derivation.structure.closed and not self.derivation.idle
+        return closed and point.rank < self.derivation.assembled.rank
+
     def _defined(self, point: Point) -> bool:
         """Whether all is finite there, and accelerations are not what is left of far larger things."""
         np = point.walk.np
@@ -356,27 +366,6 @@ def _held(
     """Values moved into their bounds."""
     pairs = [(x, bounds.get(quantity.name)) for quantity, x in zip(quantities, values, strict=True)]
     return [x if bound is None else min(max(x, bound[0]), bound[1]) for x, bound in pairs]
-
-
-def _acting(points: Sequence[Point]) -> Any:
-    """How large what acts in networks is, a row for each state."""
-    np, first = points[0].walk.np, points[0].walk.tree.layout.mechanical
-    return np.array([np.abs(point.bodies.bias[0][first:]) for point in points])
-
-
-def _even(points: Sequence[Point], calm: Any) -> bool:
-    """Whether what acts in networks is of the same size at all states, more or less, and very near zero too.
-
-    An exponential law may be huge at all states alike, and then hides all that adds to it.
-    """
-    np, sizes = points[0].walk.np, _acting(points)
-    most = sizes.max(axis=0)
-    even = bool((most <= EVEN * np.median(sizes, axis=0)).all())
-    if not len(calm):
-        return even
-    # what is nothing near zero has a dead zone, and is to be seen beyond it
-    least = np.quantile(calm, QUIET, axis=0)
-    return even and bool((most <= EVEN * np.where(least > 0, least, np.inf)).all())
 
 
 def _at_rest(derivation: Derived) -> list[float]:

@@ -15,6 +15,7 @@ from linegraph.components.constraints.base import Constraint
 from linegraph.components.forces import Load
 from linegraph.model.choices import GROUND_AXES, HEAD
 from linegraph.model.terminal_graphs import terminals_of
+from linegraph.verification.golden.constraints import Constraints
 from linegraph.verification.golden.cuts import Cuts, Pull
 from linegraph.verification.golden.walk import own_rates
 
@@ -42,7 +43,12 @@ class Edges:
         np, pull = self.cuts.walk.np, self.cuts.joints[name]
         turn = np.eye(3) if axes == GROUND else self.cuts.place(axes).rotation
         both = np.concatenate([turn.T @ pull.force, turn.T @ pull.torque])
-        return both, pull.of_force, pull.of_torque
+        return both, self._doubt * pull.of_force, self._doubt * pull.of_torque
+
+    @cached_property
+    def _doubt(self) -> float:
+        """What sizes of reactions are multiplied by where ends of loops miss each other a little."""
+        return Constraints(self.cuts.walk).doubt
 
     @property
     def reactions(self) -> Valued:

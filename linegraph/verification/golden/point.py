@@ -57,6 +57,7 @@ class Point:
         kept: what is independent.
         p: values of parameters that are not the model's own.
         lam: multipliers, which are any.
+        loud: whether steep laws act far more here than at other states; then it has a scale of its own.
     """
 
     derivation: Derived
@@ -70,6 +71,7 @@ class Point:
     kept: Kept = NOTHING
     p: Mapping[str, float] = field(default_factory=dict)
     lam: list[float] = field(default_factory=list)
+    loud: bool = False
 
     @property
     def s(self) -> list[float]:

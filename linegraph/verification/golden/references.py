@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.ir.golden_vectors import RETURNED
-from linegraph.verification.golden.constraints import Constraints
+from linegraph.verification.golden.constraints import MISSES, Constraints
 from linegraph.verification.golden.derivatives import Derivatives
 from linegraph.verification.golden.operational import Operational
 
@@ -240,12 +240,12 @@ def _v_projected(point: Point) -> Valued:
 
 def _no_gap(point: Point) -> Valued:
     value, size = point.closed.position
-    return 0 * value, size
+    return 0 * value, size + MISSES * abs(value).max(initial=0.0)
 
 
 def _no_slip(point: Point) -> Valued:
     value, size = point.closed.rates
-    return 0 * value, size
+    return 0 * value, size + MISSES * abs(value).max(initial=0.0)
 
 
 REFERENCES: dict[str, Reference] = {

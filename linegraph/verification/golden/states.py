@@ -198,17 +198,26 @@ def _values(
     made: Callable[[Point], Valued],
     shape: tuple[int, ...],
 ) -> Values:
-    """One result at all states, and for each entry the largest of what it is made of."""
+    """One result at all states, and for each entry the largest of what it is made of.
+
+    At a loud state that is what it is made of there, if it is more.
+    """
     np = points[0].walk.np
     found = [made(point) for point in points]
     sizes = [np.maximum(np.abs(value), size).reshape(-1) for value, size in found]
-    scale = np.max(sizes, axis=0) if sizes[0].size else np.zeros(0)
-    scale = [short(float(x) or 1.0, 3) for x in scale]
-    rows = tuple(
-        tuple(_digits(float(x), size) for x, size in zip(value.reshape(-1), scale, strict=True))
-        for value, _ in found
-    )
-    return Values(shape, rows, tuple(scale))
+    calm = [size for point, size in zip(points, sizes, strict=True) if not point.loud]
+    most = np.max(calm, axis=0) if sizes[0].size else np.zeros(0)
+    rows, loud = [], []
+    for point, (value, _), size in zip(points, found, sizes, strict=True):
+        scale = _scale(np.maximum(most, size) if point.loud else most)
+        rows.append(tuple(map(_digits, value.reshape(-1).tolist(), scale)))
+        if point.loud:
+            loud.append(scale)
+    return Values(shape, tuple(rows), _scale(most), tuple(loud))
+
+
+def _scale(sizes: Any) -> tuple[float, ...]:
+    return tuple(short(float(x) or 1.0, 3) for x in sizes)
 
 
 def _digits(x: float, scale: float) -> float:

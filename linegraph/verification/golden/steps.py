@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import cmath
 from dataclasses import replace
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from linegraph.components.parameters import valued
@@ -58,6 +59,26 @@ class Complexes:
         """Square root."""
         return self.function("sqrt", x)
 
+    def root(self, x: Scalar) -> Scalar:
+        """Square root by itself; that of `function` may be a factor of what has a slope at zero."""
+        return self.power(x, Fraction(1, 2))
+
+    def power(self, base: Scalar, exponent: Fraction) -> Scalar:
+        """A half-integer power: its derivative is finite where that of the root in it is not.
+
+        Raises:
+            ModelError: there is no such power, or its derivative is not finite.
+        """
+        z, count = complex(base), int(2 * exponent)
+        root = of_numbers("sqrt", z.real)
+        least = 2 if z.imag else 0
+        if root == 0 and count < least:
+            raise ModelError(
+                "", f"0**{exponent} has no finite {'derivative' if z.imag else 'value'}"
+            )
+        slope = count / 2 * root ** (count - 2) if z.imag else 0.0
+        return complex(root**count, slope * z.imag) if isinstance(base, complex) else root**count
+
     def function(self, name: str, *x: Scalar) -> Scalar:
         """Any function of `functions.ARITY`; at a kink one side of it.
 
@@ -72,6 +93,8 @@ class Complexes:
         real = of_numbers(name, *(part.real for part in z))
         if name in _OWN:
             return _OWN[name](*(x if name in ("min", "max") else z))
+        if z[0].imag and abs(z[0].real) == _STEEP.get(name):
+            raise ModelError("", f"{name}({z[0].real}) has no finite derivative")
         try:
             return complex(real, getattr(cmath, name)(*z).imag)
         except (ValueError, OverflowError):
@@ -100,6 +123,9 @@ _OWN: dict[str, Callable[..., complex]] = {
 }
 """What has no continuation in `cmath`."""
 
+_STEEP = {"asin": 1.0, "acos": 1.0}
+"""Where, up to its sign, the slope of a function is infinite; a complex step makes a large number of it."""
+
 
 def stepped(
     numeric: Numeric,
@@ -109,6 +135,7 @@ def stepped(
     u: Sequence[Scalar] | None = None,
     t: Scalar | None = None,
     parameters: Mapping[str, Scalar] | None = None,
+    held: bool = False,
 ) -> Numeric:
     """The numeric reference for a state beside the real one, for inputs and parameters beside theirs.
 
@@ -119,6 +146,7 @@ def stepped(
         u: inputs; those of `numeric` if left out.
         t: the time; that of `numeric` if left out.
         parameters: values in place of those of `numeric`; what is derived from them is so again.
+        held: whether unknowns of algebraic loops stay what they are at the real state.
     """
     given = numeric.algebra.arguments
     tree, values = numeric.tree, numeric.parameters
@@ -135,18 +163,20 @@ def stepped(
     found = replace(numeric, tree=tree, algebra=algebra, parameters=values)
     if tree.network is None or not tree.network.loop:
         return found
-    algebra = Complexes(**algebra.arguments, loop=_loop(numeric, found, q, v))
+    algebra = Complexes(**algebra.arguments, loop=_loop(numeric, found, q, v, held=held))
     return replace(found, algebra=algebra)
 
 
 def _loop(
-    numeric: Numeric, beside: Numeric, q: Sequence[Scalar], v: Sequence[Scalar]
+    numeric: Numeric, beside: Numeric, q: Sequence[Scalar], v: Sequence[Scalar], *, held: bool
 ) -> list[complex]:
-    """The unknowns of an algebraic loop beside those of the real state: one step of Newton's."""
+    """The unknowns of an algebraic loop beside those of the real state: one step of Newton's, or none."""
     import numpy as np
 
     at = numeric.exchange([x.real for x in q], [x.real for x in v])
     assert at is not None
+    if held:
+        return [complex(x) for x in at.solved]
     network = at.network
     x = np.array(at.solved)
     moved: Any = Complexes(**beside.algebra.arguments, loop=list(at.solved))
