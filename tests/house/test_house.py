@@ -481,3 +481,18 @@ def test_the_guide_names_every_package() -> None:
 def test_the_picture_is_that_of_the_imports() -> None:
     """Else run ``python tests/house/picture.py``."""
     assert picture.FILE.read_text(encoding="utf-8") == picture.svg_text(picture.scene())
+
+
+def test_documents_name_files_that_exist() -> None:
+    documents = [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("examples/**/*.md")]
+    named = [
+        (document.name, name)
+        for document in documents
+        for name in re.findall(
+            r"`((?:linegraph|codegen|tests|templates|docs|examples)/[\w/.]+\.\w+)`",
+            document.read_text(encoding="utf-8"),
+        )
+        if "NAME" not in name
+    ]
+    assert len(named) > 50
+    assert [(document, name) for document, name in named if not (ROOT / name).exists()] == []
