@@ -4,7 +4,8 @@
     python tests/benchmarks/closed_forms.py --sympy-seconds 120 --only "double pendulum"
 
 Each line is one process with one thread, after all imports: CPU seconds of `derive` and of M and h simplified
-in full, and operations (`sympy.count_ops`) of both, counted as in `tests/support/form_measures.py`. sympy's line is
+in full, and operations (`sympy.count_ops`) of both, counted as in
+`tests/support/form_measures.py`. sympy's line is
 `KanesMethod` over the same bodies and `trigsimp` of every entry of its mass matrix and forcing; what is not
 ready in time has no figures.
 

@@ -496,3 +496,29 @@ def test_documents_name_files_that_exist() -> None:
     ]
     assert len(named) > 50
     assert [(document, name) for document, name in named if not (ROOT / name).exists()] == []
+
+
+PUBLIC_PACKAGES = {"linegraph", "linegraph.drawing"}
+
+
+def test_documents_and_examples_use_public_names_alone() -> None:
+    places = [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")]
+    places += [x for x in ROOT.glob("examples/**/*") if x.suffix in (".md", ".py", ".ipynb")]
+    found = [
+        (place.name, module, [name.strip() for name in names.split(",")])
+        for place in places
+        for module, names in re.findall(
+            r"\bfrom (linegraph[\w.]*) import ([\w, ]+)", place.read_text(encoding="utf-8")
+        )
+    ]
+    assert len(found) >= 4
+    assert [x for x in found if x[1] not in PUBLIC_PACKAGES] == []
+    used = {(module, name) for _, module, names in found for name in names}
+    used |= {
+        ("linegraph", name)
+        for place in places
+        for name in re.findall(r"\blg\.([A-Za-z_]+)", place.read_text(encoding="utf-8"))
+    }
+    assert len(used) > 10
+    for module, name in sorted(used):
+        assert name in importlib.import_module(module).__all__, name
