@@ -28,15 +28,21 @@ Expr = Any
 
 @dataclass(frozen=True, repr=False)
 class Derivation(Derived, Displayed):
-    """The closed forms of a derivation, each derived when it is first asked for.
+    """The equations of a system: what `derive` returns.
 
-    With coordinates q, velocities v and inputs u, symbols all of them,
+    It is a snapshot: later changes of the model do not reach it. Closed forms are derived when they are first
+    needed, and kept. With coordinates q, velocities v and inputs u, symbols all of them,
 
         M(q) v̇ + h(q, v) = Q(q, v, u) + J^T λ        q̇ = N(q) v        J v̇ = γ
 
-    λ, J and γ only where loops or constraints are. Coordinates have the names of joints, their rates are
+    with λ, J and γ only where there are loops or constraints. Coordinates have the names of joints, their rates are
     ``name_dot``, accelerations ``a_name``, efforts ``u_name``; velocities that are no rates keep names of
-    their own. `symbol_names` says what they are called where the model has something of such a name.
+    their own. `symbol_names` lists the names that are used where the model has already taken one of these.
+
+    Attributes:
+        system: the frozen system that was derived.
+        graph: the system graph.
+        formulation: the chosen trees.
 
     Example:
         >>> from linegraph import Model, derive

@@ -1,4 +1,4 @@
-"""sympy, the face: closed forms for people, and user expressions coming in."""
+"""Closed forms: the equations of a derivation as SymPy expressions."""
 
 from __future__ import annotations
 
