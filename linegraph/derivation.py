@@ -35,9 +35,9 @@ class Derivation(Derived, Displayed):
 
         M(q) v̇ + h(q, v) = Q(q, v, u) + J^T λ        q̇ = N(q) v        J v̇ = γ
 
-    with λ, J and γ only where there are loops or constraints. Coordinates have the names of joints, their rates
-    are ``name_dot``, accelerations ``a_name``, efforts ``u_name``; velocities that are no rates keep names of
-    their own. `symbol_names` lists the names that are used where the model has already taken one of these.
+    with λ, J and γ only where there are loops or constraints. Coordinates have the names of joints, their
+    rates are ``name_dot``, accelerations ``a_name``, efforts ``u_name``; velocities that are no rates keep
+    names of their own. `symbol_names` lists what is used where the model has already taken one of these names.
 
     Attributes:
         system: the frozen system that was derived.
