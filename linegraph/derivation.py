@@ -37,7 +37,7 @@ class Derivation(Derived, Displayed):
 
     with λ, J and γ only where there are loops or constraints. Coordinates have the names of joints, their
     rates are ``name_dot``, accelerations ``a_name``, efforts ``u_name``; velocities that are no rates keep
-    names of their own. `symbol_names` lists what is used where the model has already taken one of these names.
+    names of their own. `symbol_names` lists what is used where the model has taken one of these already.
 
     Attributes:
         system: the frozen system that was derived.
