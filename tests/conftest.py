@@ -26,15 +26,21 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """Seeds of tests that are marked with them: a few, or all with ``--all-forms``.
+    """Seeds of tests that are marked with them: every second of a few, or all with ``--all-forms``.
 
     What one seed is asked by different tests of a file is asked one after the other: it is derived once.
     """
     found = metafunc.definition.get_closest_marker("seeds")
     if found is not None:
         few, every = found.args
-        wanted = every if metafunc.config.getoption("--all-forms") else few
+        wanted = every if metafunc.config.getoption("--all-forms") else few[::2]
         metafunc.parametrize("seed", wanted, scope="module")
+
+
+def pytest_collection_finish() -> None:
+    """Modules and tests live as long as the run: the garbage collector need not look at them again."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(autouse=True, scope="module")

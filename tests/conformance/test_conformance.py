@@ -40,7 +40,7 @@ SMALL = (
 )
 """Models that take little time."""
 
-CELLS = 120
+CELLS = 60
 """How many of their combinations with coordinates and commands are tried by default."""
 
 UNREFUSED = COORDINATES[0]
