@@ -79,7 +79,7 @@ def emit(
         >>> model = Model("pendulum")
         >>> bob = model.body("bob", mass=2.0, mass_center=(0, 0, -0.5))
         >>> _ = model.revolute("hinge", between=("ground", bob), axis=(0, 1, 0))
-        >>> [path.name for path in emit(model, tempfile.mkdtemp())]
+        >>> [path.name for path in emit(model, tempfile.mkdtemp(), languages=["c", "python"])]
         ['pendulum.h', 'pendulum.c', 'pendulum.py']
     """
     files = render(

@@ -3,7 +3,8 @@
 A model is built around a component: each of its edges gets a store and a resistance, in parallel or in
 series, and its edge in mechanics a shaft, a joint or two points. At random states the variables of its edges
 and, by differences along the motion, their rates are put into formulas written apart. A component that is
-added to `linegraph.components.COMPONENTS` is tested here after a line in `CASES`.
+added to `linegraph.components.scalar.COMPONENTS` is tested here once `PORTS` has its edges and
+`CASES` its law.
 """
 
 from __future__ import annotations

@@ -12,6 +12,7 @@ import pytest
 from support.emitted import load
 
 import linegraph as lg
+from linegraph.components.joints import JOINTS
 from linegraph.emission.emit import render
 from linegraph.ir.statuses import SINGULAR_POSITION
 from linegraph.numeric.between_trees import transfer
@@ -75,6 +76,11 @@ def worst_difference(model_at: Callable[[], lg.Model], seed: int, **other: Any) 
         theirs = second.reactions(*head, *there, u)
         worst = max(worst, np.abs(mine - theirs).max() / (1 + np.abs(mine).max()))
     return float(worst)
+
+
+def test_every_joint_type_is_tried_as_a_chord() -> None:
+    """A compound joint is refused as a chord: its reaction directions change with q."""
+    assert KINDS.keys() == JOINTS.keys() - {"compound"}
 
 
 @pytest.mark.parametrize("kind", KINDS)

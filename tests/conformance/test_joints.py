@@ -2,7 +2,7 @@
 
 Velocities are checked by the complex step: with q moved by i h q', h = 1e-30, the imaginary part of the
 rotation and displacement over h is their derivative, exact to rounding. A joint that is added to
-`linegraph.joints.JOINTS` is tested here without another line, unless it needs options.
+`linegraph.components.joints.JOINTS` is tested here without another line, unless it needs options.
 """
 
 from __future__ import annotations

@@ -103,7 +103,8 @@ def test_options_of_c_are_not_its_own(toy: Path) -> None:
 def test_a_function_in_the_register_is_a_language(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    made = {**codegen._REGISTER, "text": lambda module, options: {f"{module.name}.txt": "text\n"}}
+    known = {language: codegen._REGISTER[language] for language in ("c", "python")}
+    made = {**known, "text": lambda module, options: {f"{module.name}.txt": "text\n"}}
     monkeypatch.setattr(codegen, "_REGISTER", made)
     monkeypatch.setattr(codegen, "LANGUAGES", tuple(made))
     model = lg.Model("p")

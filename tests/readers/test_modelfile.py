@@ -320,7 +320,7 @@ def test_the_json_locator_finds_exactly_what_the_reader_reads(seed: int) -> None
 
 def test_the_shipped_schema_is_current() -> None:
     assert PATH.read_text(encoding="utf-8") == text(), (
-        "python -m linegraph.readers.modelfile.schema"
+        "run: linegraph schema > linegraph/readers/modelfile/schema.json"
     )
 
 

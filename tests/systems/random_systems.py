@@ -39,7 +39,6 @@ BASEMENT = "basement"
 SINGLE = ("revolute", "prismatic", "helical")
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 SEQUENCES = ("xyz", "zyx", "yxz", "zxz", "yzy")
-FAMILY = ("universal", "spherical", "cylindrical", "helical", "compound", "free")
 HERE = (np.zeros(3), np.eye(3))
 REGULARITY = 1e-4
 """Least eigenvalue of M scaled to a unit diagonal: what accuracy of accelerations stands on."""
@@ -398,7 +397,7 @@ class _Builder:
         parts: list[tuple[str, Any]] = [(kind, numbers(joint.axis))]
         leads: list[tuple[int, float]] = []
         if kind != "fixed" and rng.random() < 0.6:
-            kind = str(rng.choice(FAMILY))
+            kind = str(rng.choice(list(FAMILIES)))
             options, parts, leads = FAMILIES[kind](rng, numbers(joint.axis))
         if self.moving and kind in ("revolute", "prismatic") and rng.random() < 0.2:
             drive = random_drive(rng, joint.name)

@@ -1,4 +1,4 @@
-"""The register of constraints: one file each, one line here, one line in `model.builder.Model`."""
+"""The register of constraints: one file each; `model.builder.Model` has a method for each."""
 
 from linegraph.components.constraints.base import (
     Constraint,

@@ -1,4 +1,4 @@
-"""The register of force elements: one file each, one line here, one line in `model.builder.Model`."""
+"""The register of force elements: one file each; `model.builder.Model` has a method for each."""
 
 from linegraph.components.forces.base import Element
 from linegraph.components.forces.damper import Damper

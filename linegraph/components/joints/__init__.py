@@ -1,4 +1,4 @@
-"""The register of joint types: one file each, one line here, one line in `model.builder.Model`."""
+"""The register of joint types: one file each; `model.builder.Model` has a method for each."""
 
 from linegraph.components.joints.base import Joint
 from linegraph.components.joints.compound import Compound

@@ -1,7 +1,7 @@
 """The language as a JSON Schema, for editors that complete and check while one types.
 
-It is made from the same tables that the reader checks by; ``python -m linegraph.readers.modelfile.schema``
-writes the copy that is shipped.
+It is made from the same tables that the reader checks by. ``linegraph schema`` prints it; the copy that is
+shipped is beside this file.
 """
 
 from __future__ import annotations
@@ -48,7 +48,3 @@ def _named(inner: dict[str, Any], about: str) -> dict[str, Any]:
 def text() -> str:
     """The schema as it is shipped."""
     return json.dumps(schema(), indent=1) + "\n"
-
-
-if __name__ == "__main__":
-    PATH.write_text(text(), encoding="utf-8")

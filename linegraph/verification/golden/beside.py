@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from linegraph.verification.golden.point import Point
-    from linegraph.verification.golden.references import Reference
+    from linegraph.verification.golden.reference import Reference
     from linegraph.verification.golden.walk import Valued
 
 ANYWHERE = (

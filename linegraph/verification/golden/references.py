@@ -5,15 +5,16 @@ Each line says by which route, and what of a `Point` gives each result.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from linegraph.ir.golden_vectors import RETURNED
 from linegraph.verification.golden.constraints import MISSES, Constraints
 from linegraph.verification.golden.derivatives import Derivatives
 from linegraph.verification.golden.operational import Operational
+from linegraph.verification.golden.reference import After, Reference
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable
 
     from linegraph.kinematics.frame_trees import NamedFrame
     from linegraph.verification.golden.point import Point
@@ -26,38 +27,6 @@ BESIDE = f"{NEWTON_EULER}, calculated a complex step beside the state"
 PLACES = "where the bodies are, differentiated along the motion"
 CUT = "each joint cut, Newton's and Euler's equations of all bodies beyond"
 MOMENTA = "the momentum of every body"
-
-
-class After(NamedTuple):
-    """A function that is called with what another one has returned.
-
-    Attributes:
-        function: its name.
-        results: what gives each of its results, by name.
-        given: arguments that are not those of the same name, by name: `RETURNED` and a result's name.
-    """
-
-    function: str
-    results: Mapping[str, Callable[[Point], Valued]]
-    given: Mapping[str, str]
-
-
-class Reference(NamedTuple):
-    """How the results of a function are known otherwise.
-
-    Attributes:
-        route: in words.
-        results: what gives each result, by its name; a result that is not here is not compared itself.
-        given: arguments that are not those of the same name, by name.
-        function: its name, where the key in the register is another.
-        then: what else must hold of its results.
-    """
-
-    route: str
-    results: Mapping[str, Callable[[Point], Valued]]
-    given: Mapping[str, str] = {}
-    function: str = ""
-    then: tuple[After, ...] = ()
 
 
 def _M(point: Point) -> Valued:

@@ -17,7 +17,7 @@ from linegraph.ir.program import PREPARED_SUFFIX, Routine
 from linegraph.verification.golden.beside import beside
 from linegraph.verification.golden.draws import DIGITS, Asked, Drawing, short
 from linegraph.verification.golden.point import Kept, Point
-from linegraph.verification.golden.references import Reference, references
+from linegraph.verification.golden.references import references
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from linegraph.ir.program import Module, Program
     from linegraph.kinematics.frame_trees import NamedFrame
     from linegraph.numeric.derived import Derived
+    from linegraph.verification.golden.reference import Reference
     from linegraph.verification.golden.walk import Valued
 
 UNTESTED = {
