@@ -11,8 +11,11 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-def load(files: Mapping[str, str], name: str, folder: Path) -> Any:
-    """The module of this name among emitted files."""
+def load(files: Mapping[str, str], name: str, folder: Path, *, register: bool = False) -> Any:
+    """The module of this name among emitted files; it stays in `sys.modules` only if asked to, as pickle wants.
+
+    What stays there is never freed, and hypothesis reads the source of all that it finds there.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     for file, text in files.items():
         (folder / file).write_text(text, encoding="ascii", newline="\n")
@@ -20,6 +23,7 @@ def load(files: Mapping[str, str], name: str, folder: Path) -> Any:
     assert specification is not None
     assert specification.loader is not None
     module = importlib.util.module_from_spec(specification)
-    sys.modules[name] = module
+    if register:
+        sys.modules[name] = module
     specification.loader.exec_module(module)
     return module
