@@ -26,7 +26,6 @@ from linegraph.numeric.between_trees import transfer
 if TYPE_CHECKING:
     from linegraph.derivation import Derivation
 
-SEEDS = range(24)
 TOLERANCE = 1e-9
 
 
@@ -71,7 +70,7 @@ def compare(model_at: Any, other: dict[str, Any], rng: np.random.Generator) -> f
     return float(worst)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.seeds(range(24), range(48))
 @pytest.mark.parametrize("kind", [ABSOLUTE, ABSOLUTE_ANGLE])
 def test_random_trees_move_alike_in_all_coordinates(seed: int, kind: str) -> None:
     rng = np.random.default_rng([seed, 7])

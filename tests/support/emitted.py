@@ -12,9 +12,10 @@ if TYPE_CHECKING:
 
 
 def load(files: Mapping[str, str], name: str, folder: Path, *, register: bool = False) -> Any:
-    """The module of this name among emitted files; it stays in `sys.modules` only if asked to, as pickle wants.
+    """The module of this name among emitted files.
 
-    What stays there is never freed, and hypothesis reads the source of all that it finds there.
+    It is registered in `sys.modules` only if asked to, as pickle wants it: what is there is never freed, and
+    hypothesis reads its source.
     """
     folder.mkdir(parents=True, exist_ok=True)
     for file, text in files.items():
