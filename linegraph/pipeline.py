@@ -1,6 +1,6 @@
 """From a system to equations: the pipeline, stage by stage.
 
-    Model ──system()──→ System ──graph()──→ SystemGraph ──formulate──→ Formulation
+    Model ──system()──→ System ──system_graph──→ SystemGraph ──formulate──→ Formulation
           ──kinematic_tree──→ KinematicTree ──orthogonality, chords──→ M, h, J, ... over any algebra
           ──programs──→ Module ──codegen.render──→ files
 
