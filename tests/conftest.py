@@ -45,8 +45,14 @@ def pytest_collection_finish() -> None:
 
 @pytest.fixture(autouse=True, scope="module")
 def _forgotten(request: pytest.FixtureRequest) -> Iterator[None]:
-    """What a file's tests have cached is let go after them: a run of all tests stays below 2 GiB."""
+    """What a file's tests have cached is let go after them: a run of all tests stays below 2 GiB.
+
+    So are modules that were emitted: what is in `sys.modules` is never freed, and hypothesis reads its source.
+    """
     yield
+    for name, module in list(sys.modules.items()):
+        if "pytest-of-" in str(getattr(module, "__file__", "")):
+            del sys.modules[name]
     for value in vars(request.module).values():
         if hasattr(value, "cache_clear"):
             value.cache_clear()

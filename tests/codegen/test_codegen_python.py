@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture
 def arm(tmp_path: Path) -> Any:
-    return load(codegen.render(samples.arm(), "python"), "arm", tmp_path, register=True)
+    return load(codegen.render(samples.arm(), "python"), "arm", tmp_path)
 
 
 @pytest.fixture

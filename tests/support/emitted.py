@@ -11,12 +11,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-def load(files: Mapping[str, str], name: str, folder: Path, *, register: bool = False) -> Any:
-    """The module of this name among emitted files.
-
-    It is registered in `sys.modules` only if asked to, as pickle wants it: what is there is never freed, and
-    hypothesis reads its source.
-    """
+def load(files: Mapping[str, str], name: str, folder: Path) -> Any:
+    """The module of this name among emitted files, as if imported: golden tests import it by its name."""
     folder.mkdir(parents=True, exist_ok=True)
     for file, text in files.items():
         (folder / file).write_text(text, encoding="ascii", newline="\n")
@@ -24,7 +20,6 @@ def load(files: Mapping[str, str], name: str, folder: Path, *, register: bool = 
     assert specification is not None
     assert specification.loader is not None
     module = importlib.util.module_from_spec(specification)
-    if register:
-        sys.modules[name] = module
+    sys.modules[name] = module
     specification.loader.exec_module(module)
     return module
