@@ -47,7 +47,7 @@ def pytest_collection_finish() -> None:
 def _forgotten(request: pytest.FixtureRequest) -> Iterator[None]:
     """What a file's tests have cached is let go after them: a run of all tests stays below 2 GiB.
 
-    So are modules that were emitted: what is in `sys.modules` is never freed, and hypothesis reads its source.
+    So are emitted modules: what is in `sys.modules` is never freed, and hypothesis reads its source.
     """
     yield
     for name, module in list(sys.modules.items()):
