@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from codegen import declare, layout, prose, straight
 from codegen.frames import StackFrame
-from codegen.straight import SHARED, Numbers
+from codegen.straight import SHARED, Reals
 from linegraph.ir.functions import ARITY
 from linegraph.ir.program import PREPARED_SUFFIX, Program
 
@@ -129,7 +129,7 @@ def _made(module: Module, program: Program, statuses: dict[str, dict[int, str]])
         program.name,
         _document(module, program),
         declare.head(f"void {module.name}_{program.name}_batch(", parts),
-        straight.define(module, program, statuses, Numbers(f"{module.name}_lanes", True, True)),
+        straight.define(module, program, statuses, Reals(f"{module.name}_lanes", True, True)),
         given,
         found,
         [*(x.name for x in program.arguments), *(x.name for x in program.results)],

@@ -58,7 +58,7 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
         "failures": _failures(module),
         "guards_parameters": guard.reads_parameters(module),
     }
-    kind = straight.Numbers(inline=options.trig == "inline", real=options.real)
+    kind = straight.Reals(inline=options.trig == "inline", real=options.real)
     functions = [x for program in module.programs for x in _define(module, program, statuses, kind)]
     wide = [x for found in batches for x in found.definitions]
     source = templates.fill(
@@ -99,7 +99,7 @@ def _define(
     module: Module,
     program: Program | Routine,
     statuses: dict[str, dict[int, str]],
-    kind: straight.Numbers,
+    kind: straight.Reals,
 ) -> list[Definition]:
     """A function, after what it is made of."""
     dialect = routines.Dialect("c", f"{module.name}_", passed=True)

@@ -33,7 +33,7 @@ SHARED = ("p", "c", "t")
 
 
 @dataclass(frozen=True)
-class Numbers:
+class Reals:
     """What the numbers of a function are.
 
     Attributes:
@@ -57,7 +57,7 @@ def function(module: Module, name: str) -> str:
 
 
 def define(
-    module: Module, program: Program, statuses: dict[str, dict[int, str]], kind: Numbers
+    module: Module, program: Program, statuses: dict[str, dict[int, str]], kind: Reals
 ) -> list[Definition]:
     """A function, after the parts it calls if it is long."""
     return _Writer(module, program, statuses, kind).definitions()
@@ -71,7 +71,7 @@ class _Writer:
         module: Module,
         program: Program,
         statuses: dict[str, dict[int, str]],
-        kind: Numbers,
+        kind: Reals,
     ) -> None:
         self.module, self.program, self.statuses, self.kind = module, program, statuses, kind
         self.prefix, self.macro = module.name, module.name.upper()
@@ -376,7 +376,7 @@ def _called(call: str, may_fail: bool, ok: str) -> list[str]:
     ]
 
 
-def _notation(module: Module, kind: Numbers) -> Syntax:
+def _notation(module: Module, kind: Reals) -> Syntax:
     """How C writes expressions and checks."""
     named = {key: constant for key, (constant, _) in failures.constants(module).items()}
 

@@ -113,6 +113,15 @@ def test_no_two_modules_of_a_package_have_the_name_of_another_package() -> None:
     assert not folders & {n for n, path in files().items() if path.name != "__init__.py"}
 
 
+def test_no_two_classes_have_one_name() -> None:
+    places: dict[str, list[str]] = {}
+    for module, path in files().items():
+        for node in ast.walk(parsed(path)):
+            if isinstance(node, ast.ClassDef):
+                places.setdefault(node.name, []).append(module)
+    assert {name: found for name, found in places.items() if len(found) > 1} == {}
+
+
 def test_graphs_know_no_physics() -> None:
     seen = {room(x.target) for x in rooms.ours() if room(x.source) == "graph"}
     assert seen == {"graph", "errors", "display"}
