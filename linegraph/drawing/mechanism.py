@@ -79,7 +79,7 @@ def mechanism_scene(
 
 
 def mechanism_svg(derivation: Derived, q: Sequence[float] | None = None) -> str:
-    """`mechanism_scene` as SVG."""
+    """The sketch of `mechanism_scene` at coordinates q, as the text of an SVG file."""
     return svg_text(mechanism_scene(derivation, q))
 
 

@@ -74,7 +74,7 @@ def whole_scene(
 
 
 def whole_svg(derivation: Derived, subspace: str | Iterable[str] | None = None) -> str:
-    """`whole_scene` as SVG."""
+    """Graph and mechanism side by side (`whole_scene`), as the text of an SVG file."""
     return svg_text(whole_scene(derivation, subspace))
 
 
@@ -88,7 +88,7 @@ def _panels(derivation: Derived, subspace: str | Iterable[str] | None) -> list[P
 
 
 def graph_svg(derivation: Derived, subspace: str | Iterable[str] | None = None) -> str:
-    """`graph_scene` as SVG."""
+    """The graph of the chosen subspaces (`graph_scene`), as the text of an SVG file."""
     return svg_text(graph_scene(derivation, subspace))
 
 

@@ -88,11 +88,11 @@ class At:
         return constant(resolver(self._laws.dag, values)(given), self._laws.dag)
 
     def function(self, name: str, *x: Scalar) -> Scalar:
-        """A function."""
+        """An elementary function of `ir.functions.ARITY`, as a node of the network's DAG."""
         return self._laws.dag.function(name, *x)
 
     def potential(self, domain: str, vertex: str) -> Scalar:
-        """Along the tree from a vertex to ground."""
+        """The potential of a vertex: across variables summed along the tree from it to ground."""
         total: Scalar = 0
         for edge, sign in self._ways[(domain, vertex)]:
             x = self._laws.dag.symbol("X", edge)
@@ -100,7 +100,7 @@ class At:
         return total
 
     def derivative(self, of: Scalar, by: Scalar) -> Scalar:
-        """By a symbol."""
+        """The partial derivative of a law or charge with respect to one of the symbols above."""
         return self._laws.calculus.derivative(of, key_of(by))
 
     def taken(self, name: str) -> Scalar:

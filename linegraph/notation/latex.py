@@ -176,7 +176,7 @@ class Latex(Writer):
         return self._called(self._function(name), arguments, bare)
 
     def called_power(self, call: FunctionCall, exponent: Math, *, bare: bool) -> str:
-        """``sin² x``."""
+        """A power of a function, with the exponent after its name: ``sin² x``."""
         if call.name == "abs":
             return self.raised(self.write(call), exponent)
         named = f"{self._function(call.name)}^{{{self.whole(exponent)}}}"

@@ -124,7 +124,7 @@ class MathMl(Writer):
         return self._called(element("mi", name), arguments, bare)
 
     def called_power(self, call: FunctionCall, exponent: Math, *, bare: bool) -> str:
-        """``sin² x``."""
+        """A power of a function, with the exponent after its name: ``sin² x``."""
         if call.name == "abs":
             return self.raised(self.write(call), exponent)
         named = f"<msup>{element('mi', call.name)}{self.one(self.whole(exponent))}</msup>"

@@ -72,7 +72,7 @@ class Plain(Writer):
         return f"{name}({', '.join(self.whole(a) for a in arguments)})"
 
     def called_power(self, call: FunctionCall, exponent: Math, *, bare: bool) -> str:
-        """``sin²(x)``."""
+        """A power of a function, with the exponent after its name: ``sin²(x)``."""
         if isinstance(exponent, Numeral) and exponent.text.isdigit():
             inner = ", ".join(self.whole(a) for a in call.arguments)
             return f"{call.name}{exponent.text.translate(SUPERSCRIPTS)}({inner})"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import hashlib
 import math
 import os
@@ -241,19 +240,6 @@ def test_jinja_is_loaded_only_to_render() -> None:
         [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True
     )
     assert done.stdout == "False\n"
-
-
-def test_nothing_of_mechanics_is_imported() -> None:
-    """Programs, errors and tolerances: that is all that `codegen` knows of linegraph."""
-    seen = {
-        node.module
-        for file in (ROOT / "codegen").glob("*.py")
-        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("linegraph")
-    }
-    assert "linegraph.ir.program" in seen
-    others = {name for name in seen if not str(name).startswith("linegraph.ir.")}
-    assert others == {"linegraph.errors", "linegraph.tolerance"}
 
 
 def test_templates_refuse_a_place_that_nothing_fills() -> None:

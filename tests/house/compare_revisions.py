@@ -20,6 +20,10 @@ import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 ROOT = Path(__file__).resolve().parents[2]
 ROBOTS = 20
@@ -67,6 +71,7 @@ def models() -> dict[str, Path]:
 
 
 def _robots() -> list[tuple[str, Path]]:
+    # `oracles.pinocchio_models` finds them too, but imports linegraph, which is another one for each revision
     found = importlib.util.find_spec("pinocchio")
     files = [
         path
@@ -131,7 +136,7 @@ def run(tree: Path, work: Path) -> None:
 
 
 @contextlib.contextmanager
-def revision(name: str | None, work: Path):  # type: ignore[no-untyped-def]
+def revision(name: str | None, work: Path) -> Iterator[Path]:
     """The folder of a revision's sources; the working tree without a name."""
     if name is None:
         yield ROOT
