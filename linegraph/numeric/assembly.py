@@ -15,7 +15,7 @@ from linegraph.components.joints import Joint
 from linegraph.dynamics.regularity import Idle, link_of
 from linegraph.errors import ModelError
 from linegraph.numeric.loop_closure import Search, least, quoted
-from linegraph.tolerance import DEPENDENT
+from linegraph.tolerance import CLOSED, DEPENDENT
 
 if TYPE_CHECKING:
     import random
@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 
 ROUNDING = 1e-13
 """A pivot of the mass matrix on the motions allowed that is this part of what it was made of is zero."""
+
+OPENING = 2 * CLOSED
+"""A gap that opens faster, in pure numbers, is no rounding: both ends of a loop may be off by `CLOSED`."""
 
 INDEPENDENT = (1e-4, 1e-6)
 """Velocities determine the others if columns of J are farther from dependent than the first of these that
@@ -137,6 +140,7 @@ class _Judgement:
         best = max(self._rank_at(place) for place in places)
         at = next(place for place in places if self._rank_at(place) == best)
         J = self.search.jacobian(at)
+        self._require_decided(J, best)
         rows, columns = J.shape
         left = np.linalg.svd(J)[0][:, best:] if rows and columns else np.zeros((rows, 0))
         unique = [bool(np.abs(left[k]).max(initial=0.0) < 1e-6) for k in range(rows)]
@@ -148,6 +152,24 @@ class _Judgement:
         place = [float(x) for x in q]
         counts = (best, position_rank, rows - best, self.tree.layout.mechanical - best)
         return Assembly(place, *counts, unique, independent, massless)
+
+    def _require_decided(self, J: Array, rank: int) -> None:
+        """Refuse loops that close where they are and open as they move, by too little to be held."""
+        left, values, _ = self.np.linalg.svd(J)
+        opening = float(max(values[rank:], default=0.0))
+        if opening <= OPENING:
+            return
+        row = int(abs(left[:, rank]).argmax())
+        worst = self.equations[row]
+        size = self.search.sizes.constraints[row]
+        gap = f"{opening * size:.2g} m" if worst.multiplier.unit == "N" else f"{opening:.2g} rad"
+        circuit = " - ".join(self.derivation.circuit_of(worst.component))
+        problem = (
+            f"closes the circuit {circuit} where it stands, but a gap of {gap} opens for every radian "
+            "(or length of the loop) that it moves: too little to hold it, too much for rounding. "
+            "Give axes and places that are to agree with all their digits"
+        )
+        raise ModelError(self.search.who(worst.component), problem)
 
     def _independent(self, J: Array, rank: int) -> list[int]:
         """Velocities to keep: those declared last give way as long as the constraints determine them."""

@@ -193,6 +193,37 @@ def test_doors_on_any_axis_turn() -> None:
         assert (assembled.freedoms, assembled.redundant) == (1, 5)
 
 
+def leaning(kind: str, tilt: float, size: float) -> Model:
+    """A door on two hinges, or a drawer on two slides: the second axis leans in both of its ends."""
+    model = Model("leaning")
+    body = model.body("leaf", mass=1, mass_center=(size / 2, 0, 0), inertia=(size**2,) * 3)
+    join = model.revolute if kind == "hinge" else model.prismatic
+    apart = (0, 0, size) if kind == "hinge" else (size, 0, 0)
+    ends = (model.ground.frame("there", at=apart), body.frame("there", at=apart))
+    join("first", between=("ground", body), axis=(0, 0, 1))
+    join("second", between=ends, axis=(tilt, 0, 1), effort=False)
+    return model
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize("kind", ["hinge", "slide"])
+@pytest.mark.parametrize("coordinates", ["joint", "absolute"])
+def test_an_axis_that_leans_is_rounding_or_refused_or_holds(
+    coordinates: str, kind: str, size: float
+) -> None:
+    """Closed where it stands, a gap as large as the lean opens on the way: up to 1e-9 it is none."""
+    for tilt, freedoms in ((0.0, 1), (1e-12, 1), (1e-9, 1), (1e-8, None), (5e-8, None), (1e-6, 0)):
+        model = leaning(kind, tilt, size)
+        model.formulation(coordinates=coordinates)
+        if freedoms is None:
+            with pytest.raises(
+                ModelError, match=r'joint "(first|second)": closes .* a gap of .* opens'
+            ):
+                derive(model)
+        else:
+            assert derive(model).assembled.freedoms == freedoms
+
+
 def test_a_door_hung_on_a_turned_frame_turns(tmp_path: Path) -> None:
     """About the hinges' axis through points of the door, by Huygens and Steiner."""
     model = modelfile.parse(SLANTED.encode(), "door.toml")
