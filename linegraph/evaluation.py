@@ -1,4 +1,4 @@
-"""Functions of a derivation that compute: the emitted Python, loaded without a file."""
+"""Workspace of a derivation that compute: the emitted Python, loaded without a file."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from linegraph.ir.program import PREPARED_SUFFIX, Module, Result, reads
 from linegraph.ir.prologue import PREPARE
 from linegraph.programs.frame_names import named_frames
 from linegraph.programs.register import OF_FRAMES, PROGRAMS, module_of, parameters_of
-from linegraph.programs.workspace import Functions
+from linegraph.programs.workspace import Workspace
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -118,7 +118,7 @@ def _maker(what: str) -> tuple[str, ...]:
 
 def _of_expression(derivation: Derived, name: str, what: Any) -> Function:
     """The function of an expression or a matrix: of q, v, u, a as far as it depends on them."""
-    functions = Functions(derivation, not derivation.system.parameters)
+    functions = Workspace(derivation, not derivation.system.parameters)
     whole = sympy.sympify(what, strict=True)
     dag, tree = functions.dag, functions.tree
     symbols = {
@@ -126,7 +126,7 @@ def _of_expression(derivation: Derived, name: str, what: Any) -> Function:
         for argument, names in derivation.symbol_names.items()
         for k, symbol in enumerate(names)
     }
-    symbols |= {**functions.values, "t": dag.symbol("t")}
+    symbols |= {**functions.tree.parameters, "t": dag.symbol("t")}
     single = not isinstance(whole, sympy.MatrixBase)
     # a column is a vector to those who compute
     shape = (1,) if single else tuple(n for k, n in enumerate(whole.shape) if k == 0 or n != 1)

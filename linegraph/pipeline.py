@@ -46,7 +46,7 @@ def derived(model: Model | System, kind: type[Kind]) -> Kind:
         owners = require_distinct(declared(system), system.places)
         require_own(system, owners, system.places)
         found = kind(system, graph, formulate(system, graph))
-        require_motion(system, found.structure)
+        require_motion(found.structure)
         _ = found.symbol_names
         if found.structure.closed and found.valued:
             _require_relations(found)
@@ -61,5 +61,4 @@ def _require_relations(found: Derived) -> None:
     """Refuse relations that are no constraints of velocity."""
     if found.system.relations:
         numeric = found.numeric(t=found.system.bounds.sometime)
-        algebra, parameters = numeric.algebra, numeric.parameters
-        require_linear(found.system, numeric.tree, algebra, parameters, random.Random(0))
+        require_linear(numeric.tree, random.Random(0))

@@ -24,11 +24,10 @@ from linegraph.spatial.vector import ZERO, Matrix, Vector, add, cross, dot, subt
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.kinematics.accelerations import Wrench
     from linegraph.kinematics.arms import Arm
-    from linegraph.kinematics.links import KinematicTree
+    from linegraph.kinematics.tree_state import TreeState
     from linegraph.spatial.inertia import Moments
     from linegraph.spatial.rotation import Inertia, Rotation
 
@@ -113,9 +112,7 @@ class Freed(NamedTuple):
 
 
 def forward_dynamics(
-    tree: KinematicTree,
-    algebra: Algebra,
-    crossed: Sequence[Arm],
+    state: TreeState,
     efforts: Sequence[Scalar],
     armatures: Mapping[int, Scalar] | None = None,
 ) -> Solution:
@@ -123,13 +120,14 @@ def forward_dynamics(
 
     `armatures` are what moves with a velocity alone, as a rotor behind its gear does: they add to its pivot.
     """
+    tree, arms = state.tree, state.arms
     pivots: list[Scalar] = [0] * len(tree.velocities)
-    maps = [rigid(arm.moments) for arm in crossed]
-    wrenches = inertia_forces(tree, algebra, crossed)
+    maps = [rigid(arm.moments) for arm in arms]
+    wrenches = inertia_forces(state)
     freed: list[list[Freed]] = [[] for _ in tree.links]
     for i in reversed(range(len(tree.links))):
-        link, arm = tree.links[i], crossed[i]
-        set_label(algebra, f"articulated inertia, {link.caption}")
+        link, arm = tree.links[i], arms[i]
+        set_label(state.algebra, f"articulated inertia, {link.caption}")
         body, wrench = maps[i], wrenches[i]
         for a, freedom in enumerate(link.velocities):
             k = freedom.index
@@ -142,7 +140,7 @@ def forward_dynamics(
             p = link.parent
             maps[p] = maps[p].joined(body.turned(arm.rotation).shifted(arm.at))
             wrenches[p] = together(wrenches[p], gathered(arm, *wrench))
-    return Solution(_accelerations(tree, algebra, crossed, freed), pivots)
+    return Solution(_accelerations(state, freed), pivots)
 
 
 def _free(
@@ -176,18 +174,17 @@ def _passed_on(wrench: Wrench, freed: Freed, arm: Arm, a: int, effort: Scalar) -
     return (force[0], force[1], force[2]), (torque[0], torque[1], torque[2])
 
 
-def _accelerations(
-    tree: KinematicTree, algebra: Algebra, crossed: Sequence[Arm], freed: list[list[Freed]]
-) -> list[Scalar]:
+def _accelerations(state: TreeState, freed: list[list[Freed]]) -> list[Scalar]:
     """From the root to the leaves: each freedom answers the acceleration that reaches it.
 
     What accelerates without v̇ is in the forces, so ground does not.
     """
+    tree = state.tree
     result: list[Scalar] = [0] * len(tree.velocities)
     reached: list[tuple[Vector, Vector]] = []
     for i, link in enumerate(tree.links):
-        set_label(algebra, f"accelerations, {link.caption}")
-        arm = crossed[i]
+        set_label(state.algebra, f"accelerations, {link.caption}")
+        arm = state.arms[i]
         inner = incoming = ZERO
         if link.parent >= 0:
             outer, origin = reached[link.parent]

@@ -22,7 +22,7 @@ from linegraph.algebra.protocol import set_label
 from linegraph.components.constraints.base import Constraint, Instant, Pose, Prescribed, ReactionRow
 from linegraph.components.joints import Free
 from linegraph.components.joints.base import TORQUES
-from linegraph.components.parameters import resolver
+from linegraph.dynamics.law_names import relations
 from linegraph.dynamics.reaction_rows import rows_of, where
 from linegraph.errors import ModelError
 from linegraph.ir.program import Quantity
@@ -49,13 +49,13 @@ from linegraph.spatial.vector import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.components.joints import Joint
-    from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import Closure, KinematicTree
+    from linegraph.kinematics.tree_state import TreeState
 
 
 @dataclass(frozen=True)
@@ -90,35 +90,26 @@ class Chords:
     """The constraints of a tree at a state, over any algebra.
 
     Args:
-        tree: what was chosen.
-        algebra: where to calculate.
-        crossed: the tree's joints at the state.
-        parameters: their scalars.
-        relations: the coefficients a, the right-hand side b and γ of every relation.
+        state: the links and where they are.
     """
 
-    def __init__(
-        self,
-        tree: KinematicTree,
-        algebra: Algebra,
-        crossed: Sequence[Arm],
-        parameters: Mapping[str, Scalar],
-        relations: Sequence[tuple[Sequence[Scalar], Scalar, Scalar]] = (),
-    ) -> None:
+    def __init__(self, state: TreeState) -> None:
         """Nothing is calculated before it is asked for."""
-        self._tree = tree
-        self._algebra = algebra
-        self._crossed = crossed
-        self._parameters = parameters
+        self.state = state
+        self._tree = state.tree
+        self._algebra = state.algebra
         self._ends: dict[str, tuple[GroundFrame, GroundFrame]] = {}
-        self._relations = dict(
-            zip((r.name for r in tree.relations), relations, strict=bool(relations))
-        )
 
     @cached_property
     def frames(self) -> list[GroundFrame]:
         """The links in ground axes, accelerations at v̇ = 0."""
-        return frames(self._tree, self._algebra, self._crossed)
+        return frames(self.state)
+
+    @cached_property
+    def _relations(self) -> dict[str, tuple[list[Scalar], Scalar, Scalar]]:
+        """The coefficients a, the right-hand side b and γ of every relation."""
+        names = (relation.name for relation in self._tree.relations)
+        return dict(zip(names, relations(self.state), strict=True))
 
     def ends(self, name: str) -> tuple[GroundFrame, GroundFrame]:
         """Tail and head of a joint or constraint, in aligned axes."""
@@ -139,21 +130,20 @@ class Chords:
             set_label(self._algebra, f"chord {closure.component.name}")
             tail, head = (Pose(f.rotation, f.origin) for f in self.ends(closure.component.name))
             drive = [None if x is None else Prescribed(x.x, x.dx) for x in closure.drive]
-            resolve = resolver(self._algebra, self._parameters)
-            at = Instant(self._algebra, resolve, tail, head, drive)
+            at = Instant(self._algebra, self._tree.resolve, tail, head, drive)
             found[closure.component.name] = rows_of(closure, at)
         return found
 
     def position(self) -> list[Scalar]:
         """φ(q, t), one for each constraint that has one."""
-        return [self.rows[e.component][e.place].position for e in self._equations if e.holonomic]
+        return [self.rows[e.component][e.place].position for e in self.equations if e.holonomic]
 
     def jacobian(self) -> list[list[Scalar]]:
         """J, constraints x velocities."""
         size = len(self._tree.velocities)
         closures = {closure.component.name: closure for closure in self._tree.closures}
         found = []
-        for equation in self._equations:
+        for equation in self.equations:
             row: list[Scalar] = [0] * size
             if equation.component in self._relations:
                 row = list(self._relations[equation.component][0])
@@ -170,15 +160,15 @@ class Chords:
 
     def along(self, pair: Pair) -> Any:
         """What a force and a torque between two links do along the velocities."""
-        return along_velocities(self._tree, self._crossed, self.frames, pair)
+        return along_velocities(self.state, self.frames, pair)
 
-    def rates(self, v: Sequence[Scalar]) -> list[Scalar]:
+    def rates(self) -> list[Scalar]:
         """J v - b, from the motion of the ends itself, which also says what is prescribed."""
         found = []
-        for equation in self._equations:
+        for equation in self.equations:
             if equation.component in self._relations:
                 row, right, _ = self._relations[equation.component]
-                products = (entry * x for entry, x in zip(row, v, strict=True))
+                products = (entry * x for entry, x in zip(row, self.state.v, strict=True))
                 found.append(sum(products, start=-right))
                 continue
             u, w = relative_motion(*self.ends(equation.component))
@@ -193,7 +183,7 @@ class Chords:
             name = closure.component.name
             set_label(self._algebra, f"chord {name}, accelerations")
             known[name] = self._derived(closure, *self.ends(name))
-        return [known[e.component][e.place] for e in self._equations]
+        return [known[e.component][e.place] for e in self.equations]
 
     def effort(self, closure: Closure, efforts: Sequence[Scalar]) -> Pair:
         """The force and torque on its head of efforts along the velocities of a joint that is a chord."""
@@ -234,7 +224,8 @@ class Chords:
         return found | {f"der({x})": dx for x, dx in zip(names, changes, strict=True)}
 
     @cached_property
-    def _equations(self) -> list[ChordEquation]:
+    def equations(self) -> list[ChordEquation]:
+        """The constraints: first those with an equation of position."""
         return equations(self._tree)
 
     def _pair(self, closure: Closure, row: ReactionRow) -> Pair:
@@ -244,7 +235,7 @@ class Chords:
     def _derived(self, closure: Closure, tail: GroundFrame, head: GroundFrame) -> list[Scalar]:
         """-d/dt (f . u + m . w - b) at v̇ = 0, the row's own derivative by calculating with jets."""
         jets = Jets(self._algebra)
-        base = resolver(self._algebra, self._parameters)
+        base = self._tree.resolve
         drive = [None if x is None else Prescribed(x, Jet(x.dx, x.ddx, 0)) for x in closure.drive]
         at = Instant(jets, lambda x: lifted(base(x)), _in_motion(tail), _in_motion(head), drive)
         moving = rows_of(closure, at)

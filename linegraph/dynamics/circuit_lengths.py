@@ -17,16 +17,14 @@ import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.components.constraints.base import Constraint
-from linegraph.components.parameters import resolver
+from linegraph.dynamics.chords import equations
 from linegraph.spatial.vector import Vector, subtract
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Sequence
 
     from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
-    from linegraph.components.constraints.base import Resolve
-    from linegraph.dynamics.chords import ChordEquation
     from linegraph.ir.program import Quantity
     from linegraph.kinematics.links import Closure, KinematicTree, Link
 
@@ -46,14 +44,6 @@ class ConstraintSizes(NamedTuple):
     velocities: list[Scalar]
 
 
-class Given(NamedTuple):
-    """A tree over an algebra, with the scalars of its parameters."""
-
-    tree: KinematicTree
-    algebra: Algebra
-    parameters: Mapping[str, Scalar]
-
-
 class _Circuit(NamedTuple):
     """What a chord closes.
 
@@ -68,32 +58,28 @@ class _Circuit(NamedTuple):
     own: list[Scalar]
 
 
-def sizes(
-    given: Given, equations: Sequence[ChordEquation], numbers: Given | None = None
-) -> ConstraintSizes:
+def sizes(tree: KinematicTree, numbers: KinematicTree | None = None) -> ConstraintSizes:
     """The sizes of all constraints and velocities.
 
     Args:
-        given: the links.
-        equations: the constraints.
-        numbers: the same in numbers, which tell whether arms are rounding; `given` itself if left out.
+        tree: the links.
+        numbers: the same in numbers, which tell whether arms are rounding; `tree` itself if left out.
     """
-    numbers = numbers or given
-    tree, sample = given.tree, numbers.tree
-    circuits, known = _circuits(given), _circuits(numbers)
+    sample = numbers or tree
+    circuits, known = _circuits(tree), _circuits(sample)
     of_chord: dict[str, Scalar] = {}
     of_velocity: dict[int, Scalar] = {}
     for group in _groups(tree, circuits):
         links = {link for k in group for link in circuits[k].links}
         bodies = _extent(sample.links[k] for k in links)
         length: Scalar = bodies or 1.0
-        if _longest(numbers.algebra, [known[k] for k in group]) > SHORT * bodies:
-            length = _longest(given.algebra, [circuits[k] for k in group])
+        if _longest(sample.algebra, [known[k] for k in group]) > SHORT * bodies:
+            length = _longest(tree.algebra, [circuits[k] for k in group])
         of_chord.update((tree.closures[k].component.name, length) for k in group)
         of_velocity.update((f.index, length) for k in links for f in tree.links[k].velocities)
     rest = _extent(sample.links) or 1.0
     return ConstraintSizes(
-        [_size_of(e.multiplier, of_chord.get(e.component, 0)) for e in equations],
+        [_size_of(e.multiplier, of_chord.get(e.component, 0)) for e in equations(tree)],
         [
             of_velocity.get(k, rest) if quantity.unit == "m/s" else 1
             for k, quantity in enumerate(tree.velocities)
@@ -123,12 +109,11 @@ def _size_of(multiplier: Quantity, length: Scalar) -> Scalar:
     return sizes_of.get(multiplier.unit, 0)
 
 
-def _circuits(given: Given) -> list[_Circuit]:
-    resolve = resolver(given.algebra, given.parameters)
-    return [_circuit(given.tree, closure, resolve) for closure in given.tree.closures]
+def _circuits(tree: KinematicTree) -> list[_Circuit]:
+    return [_circuit(tree, closure) for closure in tree.closures]
 
 
-def _circuit(tree: KinematicTree, closure: Closure, resolve: Resolve) -> _Circuit:
+def _circuit(tree: KinematicTree, closure: Closure) -> _Circuit:
     """The links and arms of the circuit that a chord closes."""
     ways = []
     for seat in (closure.tail, closure.head):
@@ -147,7 +132,7 @@ def _circuit(tree: KinematicTree, closure: Closure, resolve: Resolve) -> _Circui
     own: list[Scalar] = []
     if isinstance(closure.component, Constraint):
         own += [jet.x for jet in closure.drive if jet is not None and jet.dx == 0]
-        own += [resolve(x) for x in closure.component.lengths()]
+        own += [tree.resolve(x) for x in closure.component.lengths()]
     return _Circuit(frozenset(links), arms, own)
 
 

@@ -34,31 +34,27 @@ from linegraph.spatial.rotation import square
 from linegraph.spatial.vector import add, cross
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.dynamics.applied_forces import Applied
     from linegraph.kinematics.accelerations import Wrench
     from linegraph.kinematics.arms import Arm
-    from linegraph.kinematics.links import KinematicTree
+    from linegraph.kinematics.tree_state import TreeState
     from linegraph.spatial.motion import Motion
     from linegraph.spatial.rotation import Inertia, Rotation
     from linegraph.spatial.vector import Matrix, Vector
 
 
-def bias_beside_mass(
-    tree: KinematicTree, algebra: Algebra, crossed: Sequence[Arm], acting: Applied
-) -> list[Scalar]:
+def bias_beside_mass(state: TreeState, acting: Applied) -> list[Scalar]:
     """h(q, v), less what `acting` does; the composites are those of `mass_matrix`."""
-    carried = composites(tree, algebra, list(crossed))
-    motions = spins(tree, algebra, crossed)
+    tree, arms = state.tree, state.arms
+    carried = composites(state)
+    motions = spins(state)
     total: list[Scalar] = [-effort for effort in acting.efforts]
     beyond = [(vector.negate(force), vector.negate(torque)) for force, torque in acting.wrenches]
     for i in reversed(range(len(tree.links))):
-        link, arm = tree.links[i], crossed[i]
-        set_label(algebra, f"forces, {link.caption}")
-        near = motions[link.parent] if link.parent >= 0 else resting(tree)
+        link, arm = tree.links[i], arms[i]
+        set_label(state.algebra, f"forces, {link.caption}")
+        near = motions[link.parent] if link.parent >= 0 else resting(tree.gravity)
         here = _at_joint(arm, near, carried[i])
         whole = d_alembert(here.carried, here.field)
         own = _added(here.carried, crossed_with(arm, here.motion, here.field.velocity))

@@ -39,14 +39,13 @@ from linegraph.spatial.rotation import square
 from linegraph.spatial.vector import ZERO, add, cross, dot, scale, skew, subtract
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
     from linegraph.algebra.scalar import Scalar
-    from linegraph.ir.dag import Dag
     from linegraph.kinematics.accelerations import Wrench
     from linegraph.kinematics.arms import Arm
-    from linegraph.kinematics.links import KinematicTree
     from linegraph.kinematics.state_layout import Freedom
+    from linegraph.kinematics.tree_state import TreeState
     from linegraph.spatial.inertia import Moments
     from linegraph.spatial.vector import Matrix, Vector
 
@@ -61,11 +60,11 @@ class TorqueDerivatives(NamedTuple):
     by_acceleration: Rows
 
 
-def has_slopes(tree: KinematicTree, crossed: Iterable[Arm]) -> bool:
+def has_slopes(state: TreeState) -> bool:
     """Whether every freedom is a turn and a shift that do not change in far axes."""
-    if tree.levelled:
+    if state.tree.levelled:
         return False
-    for arm in crossed:
+    for arm in state.arms:
         motion = arm.motion
         biases = (*motion.angular_bias, *motion.linear_bias)
         entries = (x for part in (*motion.angular, *motion.linear) for x in part)
@@ -78,25 +77,24 @@ def _constant(x: Scalar) -> bool:
     return not isinstance(x, Node) or (x.op == "symbol" and x.a == "p")
 
 
-def slopes(
-    tree: KinematicTree, dag: Dag, crossed: Sequence[Arm], a: Sequence[Scalar]
-) -> TorqueDerivatives:
+def slopes(state: TreeState, a: Sequence[Scalar]) -> TorqueDerivatives:
     """The derivatives of ``M a + h`` without what acts, for a tree of which `has_slopes` is true."""
+    tree = state.tree
     size = len(tree.velocities)
     found = TorqueDerivatives(*([[0] * size for _ in range(size)] for _ in range(3)))
-    carried = composites(tree, dag, list(crossed))
-    momenta = _momenta(tree, dag, crossed)
-    motions = spins(tree, dag, crossed, a)
-    forces = _transmitted(tree, dag, crossed, a)
+    carried = composites(state)
+    momenta = _momenta(state)
+    motions = spins(state, a)
+    forces = _transmitted(state, a)
     steps: list[list[_Step]] = []
-    for i, (link, arm) in enumerate(zip(tree.links, crossed, strict=True)):
-        set_label(dag, f"derivatives, {link.caption}")
-        near = motions[link.parent] if link.parent >= 0 else resting(tree)
+    for i, (link, arm) in enumerate(zip(tree.links, state.arms, strict=True)):
+        set_label(state.algebra, f"derivatives, {link.caption}")
+        near = motions[link.parent] if link.parent >= 0 else resting(tree.gravity)
         near = _seen(arm, near)
         here = [_step(arm, k, near, momenta[i].velocity) for k in range(len(link.velocities))]
         steps.append(here)
-        _inward(tree, crossed, i, here, (carried[i], momenta[i], forces[i]), found)
-        _outward(tree, crossed, i, steps, (carried[i], momenta[i]), found)
+        _inward(state, i, here, (carried[i], momenta[i], forces[i]), found)
+        _outward(state, i, steps, (carried[i], momenta[i]), found)
     return found
 
 
@@ -145,12 +143,13 @@ def _step(arm: Arm, k: int, near: Spin, velocity: Vector) -> _Step:
     return _Step(s, shift, change, rate)
 
 
-def _momenta(tree: KinematicTree, dag: Dag, crossed: Sequence[Arm]) -> list[_Momentum]:
+def _momenta(state: TreeState) -> list[_Momentum]:
     """Of all that each joint carries, velocities seen from the origin of its root."""
-    turning = [scale(2, spin.velocity) for spin in spins(tree, dag, crossed)]
+    tree, arms = state.tree, state.arms
+    turning = [scale(2, spin.velocity) for spin in spins(state)]
     found: list[_Momentum] = []
-    for i, (link, arm) in enumerate(zip(tree.links, crossed, strict=True)):
-        set_label(dag, f"momentum, {link.caption}")
+    for i, (link, arm) in enumerate(zip(tree.links, arms, strict=True)):
+        set_label(state.algebra, f"momentum, {link.caption}")
         v = ZERO
         if link.parent >= 0:
             inner = add(found[link.parent].velocity, cross(turning[link.parent], arm.at))
@@ -165,10 +164,10 @@ def _momenta(tree: KinematicTree, dag: Dag, crossed: Sequence[Arm]) -> list[_Mom
         )
         found.append(_Momentum(v, add(scale(mass, v), cross(turning[i], first)), moved))  # type: ignore[arg-type]
     for i in reversed(range(len(tree.links))):
-        link, arm = tree.links[i], crossed[i]
+        link, arm = tree.links[i], arms[i]
         if link.parent < 0:
             continue
-        set_label(dag, f"momentum carried by {link.caption}")
+        set_label(state.algebra, f"momentum carried by {link.caption}")
         inner = arm.rotation.out(found[i].first)
         tensor = arm.rotation.similarity(found[i].second)
         outer = found[link.parent]
@@ -186,17 +185,15 @@ def _product(a: Matrix, b: Matrix) -> Matrix:
     return (x, y, z)
 
 
-def _transmitted(
-    tree: KinematicTree, dag: Dag, crossed: Sequence[Arm], a: Sequence[Scalar]
-) -> list[Wrench]:
+def _transmitted(state: TreeState, a: Sequence[Scalar]) -> list[Wrench]:
     """Force and torque in every joint."""
-    forces = inertia_forces(tree, dag, crossed, a)
-    for i in reversed(range(len(tree.links))):
-        link = tree.links[i]
+    forces = inertia_forces(state, a)
+    for i in reversed(range(len(forces))):
+        link = state.tree.links[i]
         if link.parent >= 0:
-            set_label(dag, f"forces, {link.caption}")
+            set_label(state.algebra, f"forces, {link.caption}")
             outer = forces[link.parent]
-            forces[link.parent] = together(outer, gathered(crossed[i], *forces[i]))
+            forces[link.parent] = together(outer, gathered(state.arms[i], *forces[i]))
     return forces
 
 
@@ -219,8 +216,7 @@ def _turning(momentum: _Momentum) -> Matrix:
 
 
 def _inward(
-    tree: KinematicTree,
-    crossed: Sequence[Arm],
+    state: TreeState,
     i: int,
     here: Sequence[_Step],
     known: tuple[Moments, _Momentum, Wrench],
@@ -228,33 +224,33 @@ def _inward(
 ) -> None:
     """The columns of a link's freedoms: its own rows, and those of all joints further in."""
     composite, momentum, (force, torque) = known
+    tree, arms = state.tree, state.arms
     link = tree.links[i]
     for step, freedom in zip(here, link.velocities, strict=True):
         by_change = _response(composite, momentum, step.by_change)
         by_velocity = _response(composite, momentum, step.by_velocity)
         for b, own in enumerate(link.velocities):
             for rows, wrench in ((found.by_change, by_change), (found.by_velocity, by_velocity)):
-                entry = projection(crossed[i].motion, b, *wrench)
+                entry = projection(arms[i].motion, b, *wrench)
                 _contribute(rows, own, freedom, entry)
         turned = (cross(step.s, force), add(cross(step.s, torque), cross(step.k, force)))
         by_change = together(by_change, turned)
         place = i
         while (parent := tree.links[place].parent) >= 0:
-            by_change = gathered(crossed[place], *by_change)
-            by_velocity = gathered(crossed[place], *by_velocity)
+            by_change = gathered(arms[place], *by_change)
+            by_velocity = gathered(arms[place], *by_velocity)
             place = parent
             for b, other in enumerate(tree.links[place].velocities):
                 for rows, wrench in (
                     (found.by_change, by_change),
                     (found.by_velocity, by_velocity),
                 ):
-                    entry = projection(crossed[place].motion, b, *wrench)
+                    entry = projection(arms[place].motion, b, *wrench)
                     _contribute(rows, other, freedom, entry)
 
 
 def _outward(
-    tree: KinematicTree,
-    crossed: Sequence[Arm],
+    state: TreeState,
     i: int,
     steps: Sequence[Sequence[_Step]],
     known: tuple[Moments, _Momentum],
@@ -262,6 +258,7 @@ def _outward(
 ) -> None:
     """The rows of a link's freedoms in the columns of all joints further in, and M."""
     composite, momentum = known
+    tree, arms = state.tree, state.arms
     link = tree.links[i]
     back = vector.transpose(_turning(momentum))
     for step, freedom in zip(steps[i], link.velocities, strict=True):
@@ -269,11 +266,11 @@ def _outward(
         swept = add(vector.times(back, step.s), cross(momentum.first, step.k))
         place = i
         for b, own in enumerate(link.velocities):
-            entry = projection(crossed[i].motion, b, force, torque)
+            entry = projection(arms[i].motion, b, force, torque)
             _contribute(found.by_acceleration, own, freedom, entry)
         while (parent := tree.links[place].parent) >= 0:
-            force, torque = gathered(crossed[place], force, torque)
-            swept = crossed[place].rotation.out(swept)
+            force, torque = gathered(arms[place], force, torque)
+            swept = arms[place].rotation.out(swept)
             place = parent
             for other, outer in zip(steps[place], tree.links[place].velocities, strict=True):
                 entry = dot(other.s, torque) + dot(other.k, force)

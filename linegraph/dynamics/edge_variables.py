@@ -18,9 +18,8 @@ from linegraph.components.body import GROUND, MASS_CENTER
 from linegraph.components.body_mass import mass_center
 from linegraph.components.constraints.base import Constraint
 from linegraph.components.forces import Element, Load
-from linegraph.components.parameters import resolver
-from linegraph.dynamics.applied_forces import Acting
 from linegraph.dynamics.edge_quantities import NOTHING, EdgeVariables, Wrench
+from linegraph.dynamics.force_laws import ForceLaws
 from linegraph.dynamics.orthogonality import applied_to
 from linegraph.kinematics.ground_frames import GROUND_FRAME, GroundFrame, Pair, frames, seated
 from linegraph.kinematics.links import Seat
@@ -42,58 +41,37 @@ from linegraph.spatial.vector import (
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
-    from linegraph.dynamics.chords import ChordEquation, Chords
-    from linegraph.dynamics.law_names import State
-    from linegraph.kinematics.arms import Arm
-    from linegraph.kinematics.formulated import Formulated
-    from linegraph.kinematics.links import Closure, KinematicTree
-    from linegraph.model.system import System
+    from linegraph.dynamics.chords import Chords
+    from linegraph.kinematics.links import Closure
 
 
 class InverseScheme:
     """Every variable of a model at a state, over any algebra.
 
     Args:
-        derivation: the model and its graph.
-        tree: the links, not regrouped.
-        algebra: where to calculate.
-        parameters: their scalars.
-        crossed: the tree's joints at the state.
-        chords: its constraints there.
-        state: q and v.
+        chords: the links, not regrouped, where they are, and their constraints there.
         acceleration: v̇; None where only across variables are asked for.
-        multipliers: λ.
+        multipliers: λ, one for each of `chords.equations`; none where only across variables are asked for.
     """
 
     def __init__(
         self,
-        derivation: Formulated,
-        tree: KinematicTree,
-        algebra: Algebra,
-        parameters: Mapping[str, Scalar],
-        crossed: Sequence[Arm],
         chords: Chords,
-        state: State,
         acceleration: Sequence[Scalar] | None = None,
-        multipliers: Sequence[tuple[ChordEquation, Scalar]] = (),
+        multipliers: Sequence[Scalar] = (),
     ) -> None:
         """Nothing is calculated before it is asked for."""
-        self._model: System = derivation.system
-        self._walk = derivation.topology.walk
-        self._tree = tree
-        self._algebra = algebra
-        self._resolve = resolver(algebra, parameters)
-        self._chords = chords
-        self._state = state
+        self.chords = chords
+        self._tree = tree = chords.state.tree
+        self._model = tree.system
+        self._algebra = tree.algebra
+        self._resolve = tree.resolve
         self._multipliers = multipliers
-        self._frames = frames(tree, algebra, crossed, acceleration)
-        self._terminals = terminals_of(self._model)
+        self._frames = frames(chords.state, acceleration)
+        self._terminals = terminals_of(tree.system)
         self._known: dict[str, GroundFrame] = {}
-        self._acting = Acting(
-            self._model, tree, algebra, parameters, chords, state, acceleration=acceleration
-        )
+        self._laws = ForceLaws(chords, acceleration)
 
     # -- where things are
 
@@ -141,7 +119,7 @@ class InverseScheme:
             if name not in self._branches:
                 found[name] = self._chord(closure)
                 self._exchange(needed, closure, found[name])
-        for step in reversed(self._walk):
+        for step in reversed(self._tree.walk):
             name = step.edge.name
             if name in self._branches:
                 found[name] = self._branch(needed, self._tree.ends[name], step.forward)
@@ -154,7 +132,9 @@ class InverseScheme:
     @cached_property
     def _branches(self) -> set[str]:
         joints = {joint.name for joint in self._model.joints}
-        return {step.edge.name for step in self._walk if step.edge.component in joints} & joints
+        return {
+            step.edge.name for step in self._tree.walk if step.edge.component in joints
+        } & joints
 
     def _needed(self, body: str) -> Wrench:
         """What a body's motion asks for, less its weight, about its mass centre."""
@@ -177,14 +157,15 @@ class InverseScheme:
         """Multipliers times reaction directions, and efforts."""
         total = NOTHING
         component = closure.component
-        for equation, multiplier in self._multipliers:
+        equations = self.chords.equations if self._multipliers else ()
+        for equation, multiplier in zip(equations, self._multipliers, strict=True):
             if equation.component == component.name:
-                row = self._chords.rows[component.name][equation.place]
+                row = self.chords.rows[component.name][equation.place]
                 total = total + Wrench(scale(multiplier, row.force), scale(multiplier, row.torque))
         first = self._tree.layout.pushes.get(component.name)
         if first is not None and not isinstance(component, Constraint):
             given = [self._algebra.symbol("u", first + k) for k in range(component.freedoms)]
-            pair = self._chords.effort(closure, given)
+            pair = self.chords.effort(closure, given)
             total = total + Wrench(pair.force, pair.torque)
         for element in self._model.elements:
             if isinstance(element, Element) and element.joint == component.name:
@@ -229,14 +210,14 @@ class InverseScheme:
         set_label(self._algebra, f"{element.kind} {element.name}")
         if isinstance(element, Load):
             frame = self.terminal(element.at)
-            return EdgeVariables(Wrench(*self._acting.load(element)), frame.linear, frame.angular)
+            return EdgeVariables(Wrench(*self._laws.load(element)), frame.linear, frame.angular)
         if element.between is not None:
             tail, head = (self.terminal(end) for end in element.between)
-            pull = self._acting.between(element)[1]
+            pull = self._laws.between(element)[1]
             return self._edge(Wrench(negate(pull), ZERO), tail, head)
         closure = self._tree.ends[str(element.joint)]
-        y = self._acting.in_joint(element)[1]
-        pair: Pair = self._chords.effort(closure, [-y])
+        y = self._laws.in_joint(element)[1]
+        pair: Pair = self.chords.effort(closure, [-y])
         joint: Any = closure.component
         tail, head = (self.terminal(end) for end in joint.between)
         return self._edge(Wrench(pair.force, pair.torque), tail, head)
@@ -296,8 +277,8 @@ class InverseScheme:
     def tension(self, element: Element) -> tuple[Scalar, Scalar]:
         """A force element's across variable, its length or coordinate, and its through variable."""
         if element.between is None:
-            return self._acting.in_joint(element)
-        x, pull = self._acting.between(element)
+            return self._laws.in_joint(element)
+        x, pull = self._laws.between(element)
         tail, head = (self.terminal(end) for end in element.between)
         return x, dot(pull, subtract(head.origin, tail.origin)) / x
 
@@ -343,7 +324,7 @@ class InverseScheme:
             if isinstance(joint, Constraint) or not any(x is not None for x in closure.drive):
                 continue
             wrench = self.joints[name]
-            inward = transpose(self._chords.ends(name)[1].rotation)
+            inward = transpose(self.chords.ends(name)[1].rotation)
             force, torque = (times(inward, part) for part in wrench)
             at, rates = (tuple(getattr(x, c) for x in closure.drive) for c in ("x", "dx"))
             motion = joint.motion(self._algebra, at, rates)
@@ -355,7 +336,7 @@ class InverseScheme:
 
     def network(self) -> dict[str, tuple[Scalar, Scalar]]:
         """Across and through variable of every edge in scalar subspaces."""
-        exchange = self._acting.exchange
+        exchange = self._laws.exchange
         if exchange is None:
             return {}
         set_label(self._algebra, "network, every edge")
@@ -364,12 +345,12 @@ class InverseScheme:
 
     def gains(self) -> dict[str, Scalar]:
         """The energy balance of each component of networks, which is zero."""
-        exchange = self._acting.exchange
+        exchange = self._laws.exchange
         return {} if exchange is None else exchange.gains()
 
     def variables(self) -> Mapping[str, Scalar]:
         """``across(R1)`` and ``through(R1)`` of networks, as outputs name them."""
-        exchange = self._acting.exchange
+        exchange = self._laws.exchange
         return {} if exchange is None else exchange.variables()
 
     def edges(self) -> dict[str, EdgeVariables]:

@@ -2,52 +2,46 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Protocol
 
 from linegraph.algebra.jets import Jet, Jets, lifted
 from linegraph.components.parameters import names_in, resolver
 from linegraph.errors import ModelError
 from linegraph.kinematics.state_layout import coordinates
+from linegraph.kinematics.tree_state import TreeState
 
 if TYPE_CHECKING:
     import random
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
-    from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.components.constraints.relation import Relation
-    from linegraph.dynamics.chords import Chords
-    from linegraph.kinematics.links import KinematicTree
+    from linegraph.kinematics.links import Closure, KinematicTree
     from linegraph.model.system import System
 
-State = tuple[tuple[Any, ...], tuple[Any, ...]]
-"""q and v."""
+
+class Measures(Protocol):
+    """What tells the coordinates of joints that are chords."""
+
+    def named(self, closure: Closure) -> dict[str, Scalar]:
+        """Of a chord its coordinates x and their rates ``der(x)``, by name."""
 
 
-def scope(
-    model: System,
-    tree: KinematicTree,
-    algebra: Algebra,
-    parameters: Mapping[str, Scalar],
-    state: State,
-    chords: Chords | None = None,
-) -> dict[str, Any]:
+def scope(state: TreeState, chords: Measures | None = None) -> dict[str, Any]:
     """Everything a law may name, with its scalar.
 
     Args:
-        model: what was said.
-        tree: what was chosen.
-        algebra: where to calculate.
-        parameters: their scalars.
-        state: q and v.
+        state: the links and where they are.
         chords: where joints that are chords find their coordinates; None to leave these out.
     """
-    values: dict[str, Any] = {**parameters, **tree.layout.named_inputs}
-    if model.depends_on_time:
+    tree, algebra = state.tree, state.algebra
+    values: dict[str, Any] = {**tree.parameters, **tree.layout.named_inputs}
+    if tree.system.depends_on_time:
         values["t"] = algebra.symbol("t")
     known = {c.component.name: c for c in tree.closures}
-    for joint in model.joints:
-        found = joint_state(tree, joint.name, state)
+    for joint in tree.system.joints:
+        found = joint_state(state, joint.name)
         if found is not None:
             at, rates = found
             derivatives = joint.rates(algebra, at, rates)
@@ -67,52 +61,39 @@ def scope(
     return values
 
 
-def joint_state(tree: KinematicTree, joint: str, state: State) -> Any:
+def joint_state(state: TreeState, joint: str) -> Any:
     """The coordinates and velocities of a joint; None of one whose coordinates are none of the state."""
-    place = tree.layout.own(joint)
-    return None if place is None else coordinates(place, *state)
+    place = state.tree.layout.own(joint)
+    return None if place is None else coordinates(place, state.q, state.v)
 
 
-def relations(
-    model: System,
-    tree: KinematicTree,
-    algebra: Algebra,
-    parameters: Mapping[str, Scalar],
-    state: State,
-    rates: Sequence[Scalar],
-) -> list[tuple[list[Scalar], Scalar, Scalar]]:
+def relations(state: TreeState) -> list[tuple[list[Scalar], Scalar, Scalar]]:
     """Of each relation ``a v = b`` the coefficients a, the right-hand side b and γ of ``a v̇ = γ``.
-
-    Args:
-        model: as of `scope`.
-        tree: as of `scope`.
-        algebra: as of `scope`.
-        parameters: as of `scope`.
-        state: as of `scope`.
-        rates: q̇.
 
     Raises:
         ModelError: a relation names an input or what has no value.
     """
+    tree, algebra = state.tree, state.algebra
     found = []
     for relation in tree.relations:
         who = f'relation "{relation.name}"'
-        _require_no_input(model, relation)
-        _require_branches(model, tree, relation)
+        _require_no_input(tree.system, relation)
+        _require_branches(tree, relation)
 
         def evaluate(v: Sequence[Scalar], relation: Relation = relation) -> Scalar:
-            values = scope(model, tree, algebra, parameters, (state[0], tuple(v)))
+            values = scope(TreeState(tree, state.q, v))
             return resolver(algebra, values)(relation.rate)
 
         jets = Jets(algebra)
-        moving = (
-            tuple(Jet(x, dx, 0) for x, dx in zip(state[0], rates, strict=True)),
-            tuple(lifted(x) for x in state[1]),
+        lifted_parameters = {name: lifted(x) for name, x in tree.parameters.items()}
+        moving = TreeState(
+            replace(tree, algebra=jets, parameters=lifted_parameters),
+            (Jet(x, dx, 0) for x, dx in zip(state.q, state.coordinate_rates, strict=True)),
+            map(lifted, state.v),
         )
-        lifted_parameters = {name: lifted(x) for name, x in parameters.items()}
         try:
             row, right = relation.linear(algebra, evaluate, len(tree.velocities))
-            values = scope(model, tree, jets, lifted_parameters, moving)
+            values = scope(moving)
             change = lifted(resolver(jets, values)(relation.rate)).dx
         except ModelError as error:
             raise ModelError(who, error.problem) from None
@@ -122,13 +103,7 @@ def relations(
     return found
 
 
-def require_linear(
-    model: System,
-    tree: KinematicTree,
-    algebra: Algebra,
-    parameters: Mapping[str, Scalar],
-    draw: random.Random,
-) -> None:
+def require_linear(tree: KinematicTree, draw: random.Random) -> None:
     """Refuse relations that are not linear in rates, or have none; judged at random states over floats.
 
     Raises:
@@ -141,13 +116,13 @@ def require_linear(
     both = [x + y for x, y in zip(a, b, strict=True)]
     for relation in tree.relations:
         who = f'relation "{relation.name}"'
-        _require_no_input(model, relation)
-        _require_branches(model, tree, relation)
+        _require_no_input(tree.system, relation)
+        _require_branches(tree, relation)
         found = []
         for v in ([0.0] * size, a, b, both):
             try:
-                values = scope(model, tree, algebra, parameters, (tuple(q), tuple(v)))
-                found.append(float(resolver(algebra, values)(relation.rate)))
+                values = scope(TreeState(tree, q, v))
+                found.append(float(resolver(tree.algebra, values)(relation.rate)))
             except ModelError as error:
                 raise ModelError(who, error.problem) from None
             except ArithmeticError:
@@ -170,9 +145,9 @@ def _require_no_input(model: System, relation: Relation) -> None:
         raise ModelError(f'relation "{relation.name}"', problem)
 
 
-def _require_branches(model: System, tree: KinematicTree, relation: Relation) -> None:
+def _require_branches(tree: KinematicTree, relation: Relation) -> None:
     names = names_in(relation.rate)
-    for joint in model.joints:
+    for joint in tree.system.joints:
         own = {x for q in joint.positions() for x in (q.name, f"der({q.name})")}
         if names & own and tree.layout.own(joint.name) is None:
             problem = (

@@ -17,9 +17,7 @@ from linegraph.spatial.vector import ZERO, Matrix, Vector, add, cross, dot
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from linegraph.algebra.protocol import Algebra
-    from linegraph.kinematics.arms import Arm
-    from linegraph.kinematics.links import KinematicTree
+    from linegraph.kinematics.tree_state import TreeState
     from linegraph.spatial.inertia import Moments
 
 Rows = list[list[Scalar]]
@@ -27,21 +25,22 @@ Column = Iterator[tuple[Freedom, Scalar]]
 """What a force on a link does along each freedom between the link and ground."""
 
 
-def mass_matrix(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> Rows:
+def mass_matrix(state: TreeState) -> Rows:
     """M(q), n x n: (13) and (15) of the paper with H applied.
 
     The composite of a link is what H gathers: all mass carried by its joint. Its inertia force for a unit
     acceleration of one coordinate, projected on every joint on the way to the root, is one column of M.
     The force is carried from frame to frame, or in long chains to ground once and for all.
     """
+    tree, arms = state.tree, state.arms
     size = len(tree.velocities)
     rows: Rows = [[0] * size for _ in range(size)]
-    carried_by = composites(tree, algebra, crossed)
-    inward = _inward_in_ground if ground_is_cheaper(tree, crossed) else _inward_by_frames
-    columns = inward(tree, algebra, crossed)
+    carried_by = composites(state)
+    inward = _inward_in_ground if ground_is_cheaper(state) else _inward_by_frames
+    columns = inward(state)
     for i, link in enumerate(tree.links):
-        set_label(algebra, f"mass matrix, {link.caption}")
-        motion = crossed[i].motion
+        set_label(state.algebra, f"mass matrix, {link.caption}")
+        motion = arms[i].motion
         for a, freedom in enumerate(link.velocities):
             force, torque = inertia_force(carried_by[i], motion.angular[a], motion.linear[a])
             for b in range(a + 1):
@@ -52,30 +51,28 @@ def mass_matrix(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> Ro
     return rows
 
 
-def _inward_by_frames(
-    tree: KinematicTree, algebra: Algebra, crossed: list[Arm]
-) -> Callable[[int, Vector, Vector], Column]:
+def _inward_by_frames(state: TreeState) -> Callable[[int, Vector, Vector], Column]:
     """Carry a link's force and torque inward, from working frame to working frame."""
+    tree, arms = state.tree, state.arms
 
     def column(i: int, force: Vector, torque: Vector) -> Column:
         while (parent := tree.links[i].parent) >= 0:
-            force, torque = gathered(crossed[i], force, torque)
+            force, torque = gathered(arms[i], force, torque)
             i = parent
             for b, freedom in enumerate(tree.links[i].velocities):
-                yield freedom, projection(crossed[i].motion, b, force, torque)
+                yield freedom, projection(arms[i].motion, b, force, torque)
 
     return column
 
 
-def _inward_in_ground(
-    tree: KinematicTree, algebra: Algebra, crossed: list[Arm]
-) -> Callable[[int, Vector, Vector], Column]:
+def _inward_in_ground(state: TreeState) -> Callable[[int, Vector, Vector], Column]:
     """Carry a link's force and torque to the origin of ground, where all joints' axes are known too."""
+    tree = state.tree
     rows: list[Matrix] = []
     places: list[Vector] = []
     axes: list[list[tuple[Vector, Vector]]] = []
-    for link, arm in zip(tree.links, crossed, strict=True):
-        set_label(algebra, f"pose, {link.caption}")
+    for link, arm in zip(tree.links, state.arms, strict=True):
+        set_label(state.algebra, f"pose, {link.caption}")
         outer = rows[link.parent] if link.parent >= 0 else IDENTITY_MATRIX
         origin = places[link.parent] if link.parent >= 0 else ZERO
         at = add(origin, vector.times(outer, arm.at))
@@ -99,18 +96,18 @@ def _inward_in_ground(
     return column
 
 
-def ground_is_cheaper(tree: KinematicTree, crossed: list[Arm]) -> bool:
+def ground_is_cheaper(state: TreeState) -> bool:
     """Whether long chains make it worth carrying every column of M to ground.
 
     Estimated in operations: from frame to frame the turning of two vectors and a lever, at every step;
     in ground 11 at every step, and about 60 for each link and 40 for each column to get there.
     """
-    if tree.levelled:
+    if state.tree.levelled:
         return False
     inward: list[int] = []
     depth: list[int] = []
     by_frames = in_ground = 0
-    for link, arm in zip(tree.links, crossed, strict=True):
+    for link, arm in zip(state.tree.links, state.arms, strict=True):
         step = sum(TURNING[type(factor)] for factor in arm.rotation.factors)
         step += 4 * sum(1 for x in arm.at if x != 0)
         # the root's own step is never crossed: its columns end at its joint
@@ -125,20 +122,21 @@ TURNING: dict[type, int] = {Relabel: 0, Turn: 12, Full: 30}
 """Operations to turn a force and a torque by a factor of a rotation."""
 
 
-def composites(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> list[Moments]:
+def composites(state: TreeState) -> list[Moments]:
     """What each joint carries: moments gathered from the leaves to the root (H m H^T and its kin)."""
-    moments = [arm.moments for arm in crossed]
+    tree, arms = state.tree, state.arms
+    moments = [arm.moments for arm in arms]
     for i in reversed(range(len(tree.links))):
         link = tree.links[i]
         if link.parent >= 0:
-            set_label(algebra, f"carried by {link.caption}")
+            set_label(state.algebra, f"carried by {link.caption}")
             carry = moments[i]
-            if crossed[i].level:
+            if arms[i].level:
                 # what turns against ground moves with its parent like a point
                 carry = NO_MOMENTS._replace(mass=carry.mass)
             in_plane = link.in_plane and tree.links[link.parent].in_plane
             carry_over = carried_in_plane if in_plane else carried
-            seen = carry_over(carry, crossed[i].rotation, crossed[i].at)
+            seen = carry_over(carry, arms[i].rotation, arms[i].at)
             # what depends on q is known by its sums with fewer operations
             both = joined(moments[link.parent], seen)
             in_plane = tree.links[link.parent].in_plane

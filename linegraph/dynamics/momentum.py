@@ -58,7 +58,7 @@ def center_columns(view: Outlook) -> list[Column]:
     carried, _ = _firsts(view, level=True)
     found = []
     for i, (mass, first) in enumerate(carried):
-        link, arm = view.tree.links[i], view.crossed[i]
+        link, arm = view.tree.links[i], view.arms[i]
         set_label(view.algebra, f"centre of mass, {link.caption}")
         moved = zip(arm.motion.linear, arm.motion.angular, view.moved(i), strict=True)
         for u, s, (freedom, rate, _, _) in moved:
@@ -80,9 +80,9 @@ def momentum_columns(view: Outlook, c: Vector) -> list[Column]:
         c: the centre of mass.
     """
     found = []
-    carried = composites(view.tree, view.algebra, list(view.crossed))
+    carried = composites(view.state)
     apart = _apart(view)
-    for i, (link, arm) in enumerate(zip(view.tree.links, view.crossed, strict=True)):
+    for i, (link, arm) in enumerate(zip(view.tree.links, view.arms, strict=True)):
         set_label(view.algebra, f"momentum matrix, {link.caption}")
         origin = view.frames[i].origin
         lever = subtract(origin, c)
@@ -103,15 +103,15 @@ def _apart(view: Outlook) -> list[list[tuple[Vector, Vector]]]:
     A composite has them as points at their origins, which is enough for forces along joints; their mass
     centres lie elsewhere, which momentum about another point feels.
     """
-    found: list[list[tuple[Vector, Vector]]] = [[] for _ in view.crossed]
+    found: list[list[tuple[Vector, Vector]]] = [[] for _ in view.arms]
     if not view.tree.levelled:
         return found
     carried, _ = _firsts(view, level=False)
-    for k, arm in enumerate(view.crossed):
+    for k, arm in enumerate(view.arms):
         moment = view.frames[k].origin, times(view.rotation(k), carried[k][1])
         for i in view.way(view.tree.links[k].parent if arm.level else -1):
             found[i].append(moment)
-            if view.crossed[i].level:
+            if view.arms[i].level:
                 break
     return found
 
@@ -124,7 +124,7 @@ def momenta(view: Outlook, c: Vector) -> list[Twist]:
 def _own_momenta(view: Outlook) -> list[Twist]:
     """Momentum of each link, and its moment about the link's origin, in the link's axes."""
     found = []
-    for link, arm, moving in zip(view.tree.links, view.crossed, view.velocities, strict=True):
+    for link, arm, moving in zip(view.tree.links, view.arms, view.velocities, strict=True):
         set_label(view.algebra, f"momentum, {link.caption}")
         (linear, angular), (mass, first, *_) = moving, arm.moments
         push = add(vector.scale(mass, linear), cross(angular, first))
@@ -135,8 +135,7 @@ def _own_momenta(view: Outlook) -> list[Twist]:
 
 def momentum_rate(view: Outlook, c: Vector) -> Twist:
     """``d/dt (P, L)`` at v̇ = 0: d'Alembert's forces and torques of all links without gravity."""
-    weightless = replace(view.tree, gravity=ZERO)
-    forces = inertia_forces(weightless, view.algebra, view.crossed)
+    forces = inertia_forces(view.state, gravity=ZERO)
     return _about(c, _gathered(view, forces))
 
 
@@ -148,10 +147,10 @@ def _firsts(view: Outlook, *, level: bool) -> tuple[list[Moment], Vector]:
         level: whether a link that turns against ground counts as a point for the joints before it, which
             do not turn it.
     """
-    found: list[Moment] = [(arm.moments.mass, arm.moments.first) for arm in view.crossed]
+    found: list[Moment] = [(arm.moments.mass, arm.moments.first) for arm in view.arms]
     whole: Vector = ZERO
     for i in reversed(range(len(found))):
-        link, arm = view.tree.links[i], view.crossed[i]
+        link, arm = view.tree.links[i], view.arms[i]
         set_label(view.algebra, f"carried by {link.caption}")
         mass, first = found[i]
         own = ZERO if level and arm.level else arm.rotation.out(first)
@@ -169,7 +168,7 @@ def _gathered(view: Outlook, wrenches: Iterable[Twist]) -> Twist:
     found = list(wrenches)
     whole: Twist = (ZERO, ZERO)
     for i in reversed(range(len(found))):
-        link, arm = view.tree.links[i], view.crossed[i]
+        link, arm = view.tree.links[i], view.arms[i]
         set_label(view.algebra, f"gathered, {link.caption}")
         force = arm.rotation.out(found[i][0])
         torque = add(arm.rotation.out(found[i][1]), cross(arm.at, force))

@@ -26,9 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from linegraph.algebra.differentiation import Symbol
-    from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
-    from linegraph.kinematics.links import KinematicTree
+    from linegraph.kinematics.tree_state import TreeState
     from linegraph.networks import Network
 
 RESTING, DRIVEN, ALL, NONE = "resting", "driven", "all", "none"
@@ -57,20 +56,14 @@ class Exchange:
 
     Attributes:
         network: what was derived.
-        tree: the layout of states and inputs.
-        algebra: where to calculate.
-        parameters: their scalars.
-        v: the velocities, the network's states among them.
+        state: the links and where they are; the network's states are among v.
         names: what else of the model laws may name.
         motion: of an edge in mechanics, by its name.
         acceleration: v̇, where it is known.
     """
 
     network: Network
-    tree: KinematicTree
-    algebra: Algebra
-    parameters: Mapping[str, Scalar]
-    v: Sequence[Scalar]
+    state: TreeState
     names: Mapping[str, Scalar]
     motion: Callable[[str], EdgeMotion]
     acceleration: Sequence[Scalar] | None = None
@@ -79,7 +72,7 @@ class Exchange:
     @property
     def first(self) -> int:
         """Where the network's states begin in v."""
-        return self.tree.layout.mechanical
+        return self.state.tree.layout.mechanical
 
     def motion_of(self, port: str) -> EdgeMotion:
         """How an edge in mechanics moves, found once."""
@@ -178,17 +171,17 @@ class Exchange:
     @cached_property
     def still(self) -> Replay:
         """Scalars at v̇ = 0."""
-        return Replay(self.algebra, lambda symbol: self._value(symbol, None))
+        return Replay(self.state.algebra, lambda symbol: self._value(symbol, None))
 
     @cached_property
     def _moving(self) -> Replay:
         """Scalars with the rates they have, if these are known."""
-        return Replay(self.algebra, lambda symbol: self._value(symbol, self.acceleration))
+        return Replay(self.state.algebra, lambda symbol: self._value(symbol, self.acceleration))
 
     def _value(self, symbol: Symbol, acceleration: Sequence[Scalar] | None) -> Scalar:
         kind, place = symbol
         if symbol in self.network.places:
-            return self.v[self.first + self.network.places[symbol]]
+            return self.state.v[self.first + self.network.places[symbol]]
         if kind in (RATE, SHAFT_RATE):
             if acceleration is None:
                 problem = "depends on rates, which are known only once the equations are solved"
@@ -199,17 +192,17 @@ class Exchange:
         if kind == "w":
             return self.motion_of(place).w
         if kind == "p":
-            return self.parameters[place]
+            return self.state.tree.parameters[place]
         if kind == CONSTANT:
             return float(Fraction(place))
         if kind == "t":
-            return self.algebra.symbol("t")
+            return self.state.algebra.symbol("t")
         if kind in ("u", "du", "ddu"):
-            return self.tree.layout.input_rates[(kind, place)]
+            return self.state.tree.layout.input_rates[(kind, place)]
         if kind == LOOP:
             return self._loop(place)
         if kind == EASE:
-            return self.algebra.symbol(kind, place)
+            return self.state.algebra.symbol(kind, place)
         if place not in self.names:
             raise ModelError("", f"{place} is not known here")
         return self.names[place]
@@ -223,9 +216,9 @@ class Exchange:
         return total
 
     def _loop(self, place: int) -> Scalar:
-        if isinstance(self.algebra, Floats):
+        if isinstance(self.state.algebra, Floats):
             return self.solved[place]
-        return self.algebra.symbol("loop", place)
+        return self.state.algebra.symbol("loop", place)
 
     def algebraic_loop(self) -> list[Scalar]:
         """What is zero in the algebraic loop."""

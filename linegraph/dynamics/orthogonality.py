@@ -27,19 +27,16 @@ from linegraph.spatial.vector import ZERO, Vector, add, cross, dot, subtract
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.dynamics.applied_forces import Applied
     from linegraph.kinematics.arms import Arm
-    from linegraph.kinematics.links import KinematicTree
+    from linegraph.kinematics.tree_state import TreeState
     from linegraph.spatial.motion import Motion
     from linegraph.spatial.rotation import Inertia
 
 
 def inverse_dynamics(
-    tree: KinematicTree,
-    algebra: Algebra,
-    crossed: list[Arm],
+    state: TreeState,
     acceleration: Iterable[Scalar] | None = None,
     applied: Applied | None = None,
 ) -> list[Scalar]:
@@ -48,52 +45,47 @@ def inverse_dynamics(
     Motion runs from the root to the leaves (H^T), d'Alembert's forces and torques, less those `applied`,
     back (H).
     """
-    forces = inertia_forces(tree, algebra, crossed, acceleration)
-    total: list[Scalar] = [0] * len(tree.velocities)
+    forces = inertia_forces(state, acceleration)
+    total: list[Scalar] = [0] * len(state.tree.velocities)
     if applied is not None:
         forces = [
             (subtract(f, g), subtract(n, m))
             for (f, n), (g, m) in zip(forces, applied.wrenches, strict=True)
         ]
         total = [-effort for effort in applied.efforts]
-    return _inward(tree, algebra, crossed, forces, total)
+    return _inward(state, forces, total)
 
 
-def generalised_forces(
-    tree: KinematicTree, algebra: Algebra, crossed: list[Arm], applied: Applied
-) -> list[Scalar]:
+def generalised_forces(state: TreeState, applied: Applied) -> list[Scalar]:
     """What applied forces do along v: H, and the projection on every joint."""
-    return _inward(tree, algebra, crossed, list(applied.wrenches), list(applied.efforts))
+    return _inward(state, list(applied.wrenches), list(applied.efforts))
 
 
 def _inward(
-    tree: KinematicTree,
-    algebra: Algebra,
-    crossed: list[Arm],
-    forces: list[tuple[Vector, Vector]],
-    total: list[Scalar],
+    state: TreeState, forces: list[tuple[Vector, Vector]], total: list[Scalar]
 ) -> list[Scalar]:
     """Cutset equations: forces from the leaves to the root, projected on every freedom they pass."""
+    tree, arms = state.tree, state.arms
     for i in reversed(range(len(tree.links))):
         link = tree.links[i]
-        set_label(algebra, f"forces, {link.caption}")
+        set_label(state.algebra, f"forces, {link.caption}")
         force, torque = forces[i]
         for a, freedom in enumerate(link.velocities):
-            entry = projection(crossed[i].motion, a, force, torque)
+            entry = projection(arms[i].motion, a, force, torque)
             total[freedom.index] = total[freedom.index] + freedom.ratio * entry
         if link.parent >= 0:
-            force, torque = gathered(crossed[i], force, torque)
+            force, torque = gathered(arms[i], force, torque)
             outer = forces[link.parent]
             forces[link.parent] = (add(outer[0], force), add(outer[1], torque))
     return total
 
 
-def energy(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> tuple[Scalar, Scalar]:
+def energy(state: TreeState) -> tuple[Scalar, Scalar]:
     """Kinetic and potential energy (J); the latter is zero with all mass at the origin of ground."""
     kinetic: Scalar = 0
     velocities: list[tuple[Vector, Vector]] = []
-    for link, arm in zip(tree.links, crossed, strict=True):
-        set_label(algebra, f"kinetic energy, {link.caption}")
+    for link, arm in zip(state.tree.links, state.arms, strict=True):
+        set_label(state.algebra, f"kinetic energy, {link.caption}")
         angular, linear = velocities[link.parent] if link.parent >= 0 else (ZERO, ZERO)
         linear = arm.rotation.into(add(linear, cross(angular, arm.at)))
         linear = add(linear, vector.combine(arm.rates, arm.motion.linear))
@@ -104,16 +96,17 @@ def energy(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> tuple[S
         momentum = add(vector.scale(mass, linear), cross(angular, first))
         spin = add(applied_to(arm.moments.inertia, angular), cross(first, linear))
         kinetic = kinetic + (dot(linear, momentum) + dot(angular, spin))
-    return kinetic / 2, _potential(tree, algebra, crossed)
+    return kinetic / 2, _potential(state)
 
 
-def _potential(tree: KinematicTree, algebra: Algebra, crossed: list[Arm]) -> Scalar:
+def _potential(state: TreeState) -> Scalar:
     """``-g . (sum of m r)``: first moments gathered from the leaves to the root."""
-    gathered = [(arm.moments.mass, arm.moments.first) for arm in crossed]
+    tree, arms = state.tree, state.arms
+    gathered = [(arm.moments.mass, arm.moments.first) for arm in arms]
     total: Vector = ZERO
     for i in reversed(range(len(tree.links))):
-        link, arm = tree.links[i], crossed[i]
-        set_label(algebra, f"potential energy, {link.caption}")
+        link, arm = tree.links[i], arms[i]
+        set_label(state.algebra, f"potential energy, {link.caption}")
         mass, first = gathered[i]
         first = add(arm.rotation.out(first), vector.scale(mass, arm.at))
         if link.parent < 0:

@@ -18,14 +18,8 @@ from linegraph.errors import ModelError
 from linegraph.model.terminal_graphs import terminals_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
-    from linegraph.dynamics.chords import Chords
     from linegraph.dynamics.edge_variables import InverseScheme
-    from linegraph.dynamics.law_names import State
-    from linegraph.kinematics.links import KinematicTree
     from linegraph.model.system import System
 
 OF_POINTS = {
@@ -39,24 +33,18 @@ DYNAMIC = ("acceleration", "angular_acceleration", "force", "torque")
 """Variables that are known only after forward dynamics."""
 
 
-def observed(
-    model: System,
-    tree: KinematicTree,
-    algebra: Algebra,
-    parameters: Mapping[str, Scalar],
-    chords: Chords,
-    state: State,
-    scheme: InverseScheme,
-) -> tuple[list[Scalar], bool]:
+def observed(scheme: InverseScheme) -> tuple[list[Scalar], bool]:
     """The outputs' scalars, and whether one of them takes accelerations.
 
     Raises:
         ModelError: an output names what does not exist.
     """
-    values = scope(model, tree, algebra, parameters, state, chords)
+    state = scheme.chords.state
+    model, algebra = state.tree.system, state.algebra
+    values = scope(state, scheme.chords)
     # an effort has the name of a coordinate or a velocity, which here means that and nothing else
     own = {x.name for j in model.joints for x in (*j.positions(), *j.velocities())}
-    prescribing = {q.name: k for k, q in enumerate(tree.inputs) if q.name not in own}
+    prescribing = {q.name: k for k, q in enumerate(state.tree.inputs) if q.name not in own}
     dynamic = False
     found = []
     for output in model.outputs:

@@ -15,17 +15,15 @@ from linegraph.algebra.protocol import Floats
 from linegraph.components.parameters import sample_values
 from linegraph.dynamics.mass_matrix import composites, mass_matrix
 from linegraph.errors import ModelError
-from linegraph.kinematics.arms import arms
 from linegraph.kinematics.tree import kinematic_tree
+from linegraph.kinematics.tree_state import TreeState
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from linegraph.formulation.formulate import Formulation
-    from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import KinematicTree, Link
     from linegraph.model.system import System
-    from linegraph.spatial.inertia import Moments
 
     Entry = tuple[int, int, float]
 
@@ -51,14 +49,14 @@ class Idle:
     moved: str
 
 
-def require_motion(model: System, tree: KinematicTree) -> None:
+def require_motion(tree: KinematicTree) -> None:
     """Refuse a model without states.
 
     Raises:
         ModelError: nothing moves, and nothing stores energy.
     """
     if not tree.velocities:
-        raise ModelError(f'model "{model.name}"', _nothing(model))
+        raise ModelError(f'model "{tree.system.name}"', _nothing(tree.system))
 
 
 def massless(tree: KinematicTree, added: Callable[[], Sequence[Entry]]) -> tuple[Idle, ...]:
@@ -195,9 +193,9 @@ def _failing(tree: KinematicTree, seed: int, added: Sequence[Entry]) -> tuple[li
     draw = random.Random(seed)
     q = [draw.uniform(-1, 1) for _ in tree.positions]
     tree.normalise(q)
-    crossed = arms(tree, Floats(), q, [0.0] * len(tree.velocities))
-    rows = [list(row) for row in mass_matrix(tree, Floats(), crossed)]
-    scales = _scales(tree, crossed, composites(tree, Floats(), crossed))
+    state = TreeState(tree, q, [0.0] * len(tree.velocities))
+    rows = [list(row) for row in mass_matrix(state)]
+    scales = _scales(state)
     outward = tree.outward[: tree.layout.mechanical]
     for i, j, entry in added:
         if max(i, j) < tree.layout.mechanical:
@@ -206,15 +204,16 @@ def _failing(tree: KinematicTree, seed: int, added: Sequence[Entry]) -> tuple[li
     return _failing_pivots(rows, scales, outward)
 
 
-def _scales(tree: KinematicTree, crossed: Sequence[Arm], carried: list[Moments]) -> list[float]:
+def _scales(state: TreeState) -> list[float]:
     """What each coordinate's inertia would be in the worst direction: zero is judged beside it.
 
     A turn about any axis through the joint, with the mass as far from it as it is, and a shift of all mass.
     An arm that is rounding beside the model's own lengths is none.
     """
+    tree = state.tree
     scales = [0.0] * len(tree.velocities)
     arm = DUST * _reach(tree)
-    for link, cross, moments in zip(tree.links, crossed, carried, strict=True):
+    for link, cross, moments in zip(tree.links, state.arms, composites(state), strict=True):
         xx, _, _, yy, _, zz = moments.inertia
         mass, first = abs(moments.mass), math.hypot(*moments.first)
         turning = abs(xx) + abs(yy) + abs(zz) + mass * arm * arm / SINGULAR

@@ -10,72 +10,46 @@ from typing import TYPE_CHECKING
 
 from linegraph.algebra.protocol import set_label
 from linegraph.dynamics import orthogonality
-from linegraph.dynamics.applied_forces import Acting
 from linegraph.dynamics.mass_matrix import mass_matrix
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Sequence
 
-    from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.dynamics.applied_forces import Applied
-    from linegraph.dynamics.chords import Chords
-    from linegraph.dynamics.law_names import State
     from linegraph.dynamics.network_state import Exchange
-    from linegraph.kinematics.arms import Arm
-    from linegraph.kinematics.links import KinematicTree
-    from linegraph.model.system import System
+    from linegraph.kinematics.tree_state import TreeState
 
 Entries = list[tuple[int, int, "Scalar"]]
 
 
-def exchange_at(
-    model: System,
-    tree: KinematicTree,
-    algebra: Algebra,
-    parameters: Mapping[str, Scalar],
-    chords: Chords,
-    state: State,
-) -> Exchange | None:
-    """A model's networks at a state; None if it has none."""
-    if tree.network is None:
-        return None
-    return Acting(model, tree, algebra, parameters, chords, state).exchange
-
-
-def network_entries(exchange: Exchange | None, algebra: Algebra) -> Entries:
+def network_entries(exchange: Exchange | None) -> Entries:
     """What networks add to the mass matrix: row, column and entry; places may repeat."""
     if exchange is None:
         return []
-    set_label(algebra, "network, what it stores")
+    set_label(exchange.state.algebra, "network, what it stores")
     return list(exchange.inertia())
 
 
 def united_mass_matrix(
-    tree: KinematicTree,
-    algebra: Algebra,
-    crossed: Sequence[Arm],
-    entries: Iterable[tuple[int, int, Scalar]],
+    state: TreeState, entries: Iterable[tuple[int, int, Scalar]]
 ) -> list[list[Scalar]]:
     """𝓜: the mass matrix, and what networks add."""
-    rows = mass_matrix(tree, algebra, list(crossed))
+    rows = mass_matrix(state)
     for i, j, entry in entries:
         rows[i][j] = rows[i][j] + entry
     return rows
 
 
 def united_inverse_dynamics(
-    tree: KinematicTree,
-    algebra: Algebra,
-    crossed: Sequence[Arm],
+    state: TreeState,
     entries: Iterable[tuple[int, int, Scalar]],
-    a: Sequence[Scalar] | None,
-    acting: Applied | None,
+    a: Sequence[Scalar],
+    acting: Applied,
 ) -> list[Scalar]:
-    """``𝓜 a + h``, of mechanics without forming its mass matrix; h where no a is given."""
-    found = orthogonality.inverse_dynamics(tree, algebra, list(crossed), a, acting)
-    if a is not None:
-        set_label(algebra, "network, what it stores")
-        for i, j, entry in entries:
-            found[i] = found[i] + entry * a[j]
+    """``𝓜 a + h``, of mechanics without forming its mass matrix."""
+    found = orthogonality.inverse_dynamics(state, a, acting)
+    set_label(state.algebra, "network, what it stores")
+    for i, j, entry in entries:
+        found[i] = found[i] + entry * a[j]
     return found

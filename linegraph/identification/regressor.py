@@ -30,10 +30,9 @@ from linegraph.spatial.vector import ZERO, Vector, add, cross, dot
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.kinematics.arms import Arm
-    from linegraph.kinematics.links import KinematicTree
+    from linegraph.kinematics.tree_state import TreeState
     from linegraph.spatial.placement import Placement
 
 Columns = dict[int, list["Scalar"]]
@@ -53,27 +52,21 @@ class Station(NamedTuple):
 
 
 def by_motions(
-    tree: KinematicTree,
-    algebra: Algebra,
-    crossed: Sequence[Arm],
-    stations: Sequence[Station],
-    acceleration: Sequence[Scalar],
+    state: TreeState, stations: Sequence[Station], acceleration: Sequence[Scalar]
 ) -> list[Columns]:
     """Of each station the coefficients of m, b and J (xx, xy, yy, xz, yz, zz) along each velocity.
 
     Args:
-        tree: the links.
-        algebra: where to calculate.
-        crossed: its joints at the state.
+        state: the links and where they are.
         stations: of each link in question the frame its moments are told in.
         acceleration: v̇.
     """
-    motions = spins(tree, algebra, crossed, acceleration)
-    screws = _screws(tree, algebra, crossed)
+    motions = spins(state, acceleration)
+    screws = _screws(state)
     found = []
     for station in stations:
-        set_label(algebra, f"parameters of {tree.links[station.link].name}")
-        rotation, at = _seat(crossed, station)
+        set_label(state.algebra, f"parameters of {state.tree.links[station.link].name}")
+        rotation, at = _seat(state.arms, station)
         into, table = rotation.into, _table(motions[station.link], rotation, at)
         found.append(
             {
@@ -85,18 +78,14 @@ def by_motions(
 
 
 def by_wrenches(
-    tree: KinematicTree,
-    algebra: Algebra,
-    crossed: Sequence[Arm],
-    stations: Sequence[Station],
-    acceleration: Sequence[Scalar],
+    state: TreeState, stations: Sequence[Station], acceleration: Sequence[Scalar]
 ) -> list[Columns]:
     """The same, the wrench of a unit of each moment carried inward."""
-    motions = spins(tree, algebra, crossed, acceleration)
+    motions = spins(state, acceleration)
     found = []
     for station in stations:
-        set_label(algebra, f"parameters of {tree.links[station.link].name}")
-        rotation, at = _seat(crossed, station)
+        set_label(state.algebra, f"parameters of {state.tree.links[station.link].name}")
+        rotation, at = _seat(state.arms, station)
         wrenches = []
         for f, n in _table(motions[station.link], rotation, at).wrenches():
             force = rotation.out(f)
@@ -104,7 +93,7 @@ def by_wrenches(
         columns: Columns = {}
         i = station.link
         while i >= 0:
-            link, arm = tree.links[i], crossed[i]
+            link, arm = state.tree.links[i], state.arms[i]
             for a, freedom in enumerate(link.velocities):
                 known = columns.setdefault(freedom.index, [0] * len(wrenches))
                 for c, wrench in enumerate(wrenches):
@@ -115,9 +104,9 @@ def by_wrenches(
     return found
 
 
-def _seat(crossed: Sequence[Arm], station: Station) -> tuple[Rotation, Vector]:
+def _seat(arms: Sequence[Arm], station: Station) -> tuple[Rotation, Vector]:
     """A station's axes and origin in the working axes of its link."""
-    turn = crossed[station.link].turn
+    turn = arms[station.link].turn
     return turn @ rotation_of(station.pose.rotation), turn.out(station.pose.at)
 
 
@@ -132,13 +121,11 @@ Screw = tuple[Vector, Vector]
 """The angular velocity of a link and the velocity of its origin."""
 
 
-def _screws(
-    tree: KinematicTree, algebra: Algebra, crossed: Sequence[Arm]
-) -> list[dict[int, Screw]]:
+def _screws(state: TreeState) -> list[dict[int, Screw]]:
     """How each link moves for a unit of each velocity, in its working frame; those that do not left out."""
     found: list[dict[int, Screw]] = []
-    for link, arm in zip(tree.links, crossed, strict=True):
-        set_label(algebra, f"motion by unit velocities, {link.caption}")
+    for link, arm in zip(state.tree.links, state.arms, strict=True):
+        set_label(state.algebra, f"motion by unit velocities, {link.caption}")
         into = arm.rotation.into
         here: dict[int, Screw] = {}
         for k, (s, u) in (found[link.parent] if link.parent >= 0 else {}).items():

@@ -12,7 +12,7 @@ from linegraph.identification.base_parameters import BaseParameters
 from linegraph.identification.regressor import Station, by_motions
 from linegraph.identification.relations import PREFERRED, Member, Twist, null_vectors, without
 from linegraph.identification.standard_parameters import MOMENTS, Axis, axes, homes, quantities
-from linegraph.kinematics.arms import arms
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.spatial.placement import Placement
 from linegraph.spatial.vector import negate
 
@@ -66,9 +66,9 @@ def base_parameters(
         raise ModelError(
             f'model "{model.name}"', "has no links that move: it has no base parameters"
         )
-    named = quantities(model, tree)
+    named = quantities(tree)
     samples = _samples(derivation)
-    seen = axes(model, tree)
+    seen = axes(tree)
     links = _members(tree, [numeric.tree for numeric in samples], seen)
     gravity = _vector(tree.gravity, [numeric.tree.gravity for numeric in samples])
     vectors = null_vectors(links, gravity)
@@ -104,7 +104,7 @@ def members_of(derivation: Derived, tree: KinematicTree, *, own_values: bool) ->
         own_values: whether the latter.
     """
     samples = [derivation.numeric()] if own_values else _samples(derivation)
-    seen = axes(derivation.system, tree)
+    seen = axes(tree)
     return _members(tree, [numeric.tree for numeric in samples], seen)
 
 
@@ -237,11 +237,11 @@ def regressor_rows(
 
 def _fill(Y: Array, numeric: Numeric, seen: Sequence[Axis], state: tuple[list[float], ...]) -> None:
     """Y at a state."""
-    tree, algebra = numeric.tree, numeric.algebra
+    tree = numeric.tree
     q, v, a = state
     stations = [Station(i, home.pose) for i, home in enumerate(homes(tree))]
     count = 10 * len(tree.links)
-    found = by_motions(tree, algebra, arms(tree, algebra, q, v), stations, a)
+    found = by_motions(TreeState(tree, q, v), stations, a)
     for i, columns in enumerate(found):
         for k, entries in columns.items():
             Y[k, 10 * i : 10 * i + 10] = entries

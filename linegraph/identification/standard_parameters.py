@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.components.body_mass import body_moments
 from linegraph.components.forces import Damper, Friction
-from linegraph.components.parameters import names_in, resolver
+from linegraph.components.parameters import names_in
 from linegraph.ir.program import Quantity
 from linegraph.spatial.inertia import NO_MOMENTS, joined
 from linegraph.spatial.placement import Placement, compose, inverse
@@ -30,7 +30,6 @@ from linegraph.spatial.vector import ZERO
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.components.forces import Element, Load
     from linegraph.kinematics.links import KinematicTree
@@ -89,8 +88,9 @@ def homes(tree: KinematicTree) -> list[Home]:
     return [found[i] for i in range(len(tree.links))]
 
 
-def axes(model: System, tree: KinematicTree) -> list[Axis]:
+def axes(tree: KinematicTree) -> list[Axis]:
     """The joints that have parameters of their own, in declared order."""
+    model = tree.system
     followers = {coupling.joint for coupling in model.couplings}
     found = []
     for joint in model.joints:
@@ -110,7 +110,7 @@ def _width(model: System, joint: str) -> Any:
     return next(constant, Friction.width)
 
 
-def quantities(model: System, tree: KinematicTree) -> tuple[Quantity, ...]:
+def quantities(tree: KinematicTree) -> tuple[Quantity, ...]:
     """The standard parameters with their units, links before joints."""
     found = []
     for home in homes(tree):
@@ -122,7 +122,7 @@ def quantities(model: System, tree: KinematicTree) -> tuple[Quantity, ...]:
         )
         for part, (unit, meaning) in zip(MOMENTS, texts, strict=True):
             found.append(Quantity(f"{home.body}.{part}", unit, f"{meaning}, {who}"))
-    for axis in axes(model, tree):
+    for axis in axes(tree):
         units = ("N*m*s", "N*m", "kg*m^2") if axis.turns else ("N*s/m", "N", "kg")
         texts = tuple(
             zip(units, ("viscous friction", "dry friction", "rotor inertia"), strict=True)
@@ -134,11 +134,9 @@ def quantities(model: System, tree: KinematicTree) -> tuple[Quantity, ...]:
     return tuple(found)
 
 
-def link_values(
-    model: System, tree: KinematicTree, algebra: Algebra, parameters: Mapping[str, Scalar]
-) -> list[Scalar]:
+def link_values(tree: KinematicTree) -> list[Scalar]:
     """The ten moments of each link, of the model's own numbers."""
-    resolve = resolver(algebra, parameters)
+    resolve, model = tree.resolve, tree.system
     found = homes(tree)
     moments = [NO_MOMENTS] * len(found)
     for name, (link, pose) in tree.bodies.items():
@@ -170,22 +168,16 @@ class Bearings:
     others: tuple[Element | Load, ...]
 
 
-def friction_values(
-    model: System,
-    tree: KinematicTree,
-    algebra: Algebra,
-    parameters: Mapping[str, Scalar],
-    elements: Iterable[Element | Load],
-) -> Bearings:
+def friction_values(tree: KinematicTree, elements: Iterable[Element | Load]) -> Bearings:
     """Sort elements into joints' parameters and all others."""
-    resolve = resolver(algebra, parameters)
-    known = {axis.joint: axis for axis in axes(model, tree)}
+    resolve = tree.resolve
+    known = {axis.joint: axis for axis in axes(tree)}
     damping: dict[str, Scalar] = dict.fromkeys(known, 0)
     friction: dict[str, Scalar] = dict.fromkeys(known, 0)
     others: list[Element | Load] = []
     for element in elements:
         seat = _seat(tree, known, element)
-        constant = all(names_in(value) <= set(model.parameters) for value in element.values())
+        constant = all(names_in(value) <= set(tree.system.parameters) for value in element.values())
         if seat is None or not constant or not isinstance(element, (Damper, Friction)):
             others.append(element)
             continue

@@ -13,12 +13,11 @@ from linegraph.spatial.motion import Motion
 from linegraph.spatial.vector import ZERO, Vector, add, cross
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
 
-    from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.kinematics.arms import Arm
-    from linegraph.kinematics.links import KinematicTree
+    from linegraph.kinematics.tree_state import TreeState
     from linegraph.spatial.inertia import Moments
     from linegraph.spatial.rotation import Inertia
 
@@ -35,26 +34,23 @@ class Spin(NamedTuple):
     linear: Vector
 
 
-def resting(tree: KinematicTree) -> Spin:
+def resting(gravity: Vector) -> Spin:
     """How ground moves: gravity enters as its acceleration -g."""
-    return Spin(ZERO, ZERO, vector.negate(tree.gravity))
+    return Spin(ZERO, ZERO, vector.negate(gravity))
 
 
 def spins(
-    tree: KinematicTree,
-    algebra: Algebra,
-    crossed: Sequence[Arm],
-    acceleration: Iterable[Scalar] | None = None,
+    state: TreeState, acceleration: Iterable[Scalar] | None = None, gravity: Vector | None = None
 ) -> list[Spin]:
     """How every link moves.
 
     Gravity enters as the acceleration -g of ground.
     """
     a = None if acceleration is None else tuple(acceleration)
-    ground = resting(tree)
+    ground = resting(state.tree.gravity if gravity is None else gravity)
     found: list[Spin] = []
-    for link, arm in zip(tree.links, crossed, strict=True):
-        set_label(algebra, f"motion, {link.caption}")
+    for link, arm in zip(state.tree.links, state.arms, strict=True):
+        set_label(state.algebra, f"motion, {link.caption}")
         near = found[link.parent] if link.parent >= 0 else ground
         here = crossing(arm, near.velocity)
         angular = here.spin if arm.level else add(arm.rotation.into(near.angular), here.spin)
@@ -130,16 +126,13 @@ def seen_near(arm: Arm) -> Motion:
 
 
 def inertia_forces(
-    tree: KinematicTree,
-    algebra: Algebra,
-    crossed: Sequence[Arm],
-    acceleration: Iterable[Scalar] | None = None,
+    state: TreeState, acceleration: Iterable[Scalar] | None = None, gravity: Vector | None = None
 ) -> list[Wrench]:
     """Force and torque that each link's own motion asks for; with no v̇ given, at v̇ = 0."""
     found = []
-    motions = spins(tree, algebra, crossed, acceleration)
-    for link, arm, spin in zip(tree.links, crossed, motions, strict=True):
-        set_label(algebra, f"forces, {link.caption}")
+    motions = spins(state, acceleration, gravity)
+    for link, arm, spin in zip(state.tree.links, state.arms, motions, strict=True):
+        set_label(state.algebra, f"forces, {link.caption}")
         found.append(d_alembert(arm.moments, spin))
     return found
 

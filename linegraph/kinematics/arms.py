@@ -48,11 +48,9 @@ class Arm(NamedTuple):
     angle: Scalar = 0
 
 
-def arms(
-    tree: KinematicTree, algebra: Algebra, q: Iterable[Scalar], v: Iterable[Scalar]
-) -> list[Arm]:
+def arms(tree: KinematicTree, q: Iterable[Scalar], v: Iterable[Scalar]) -> list[Arm]:
     """Every joint's motion at (q, v)."""
-    q, v = tuple(q), tuple(v)
+    algebra, q, v = tree.algebra, tuple(q), tuple(v)
     found: list[Arm] = []
     for link in tree.links:
         set_label(algebra, f"joint {link.joint.name}")
@@ -97,14 +95,14 @@ def _in_a_run(algebra: Algebra, link: Link, arm: Arm, found: Sequence[Arm], angl
 
 
 def _against_parent(
-    tree: KinematicTree, crossed: list[Arm], link: Link, absolute: Rotation
+    tree: KinematicTree, found: list[Arm], link: Link, absolute: Rotation
 ) -> Rotation:
     """The rotation to the parent's axes of a link whose rotation to ground axes is given."""
     outward: list[Rotation] = []
     i = link.parent
     while i >= 0:
         near = tree.links[i]
-        outward.append(crossed[i].motion.rotation if near.in_space else crossed[i].rotation)
+        outward.append(found[i].motion.rotation if near.in_space else found[i].rotation)
         i = -1 if near.in_space else near.parent
     matrix = absolute.matrix()
     for rotation in reversed(outward):
@@ -114,11 +112,9 @@ def _against_parent(
     return Rotation((Full(matrix),))
 
 
-def coordinate_rates(
-    tree: KinematicTree, algebra: Algebra, q: Iterable[Scalar], v: Iterable[Scalar]
-) -> list[Scalar]:
+def coordinate_rates(tree: KinematicTree, q: Iterable[Scalar], v: Iterable[Scalar]) -> list[Scalar]:
     """``q̇ = N(q) v``."""
-    q, v = tuple(q), tuple(v)
+    algebra, q, v = tree.algebra, tuple(q), tuple(v)
     rates: list[Scalar] = [0] * len(tree.positions)
     for link in tree.links:
         places = link.place.positions

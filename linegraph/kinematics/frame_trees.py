@@ -25,8 +25,7 @@ from linegraph.spatial.placement import Placement, compose
 from linegraph.spatial.rotation import IDENTITY_MATRIX, Rotation, rotation_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from typing import Any
+    from collections.abc import Sequence
 
     from linegraph.algebra.scalar import Scalar
     from linegraph.model.system import System
@@ -71,25 +70,21 @@ def require_frame(model: System, frame: str) -> None:
         )
 
 
-def seat_of(
-    model: System, tree: KinematicTree, resolve: Callable[[Any], Scalar], frame: str
-) -> Seat:
+def seat_of(tree: KinematicTree, frame: str) -> Seat:
     """The link that carries a frame, -1 for ground, and where it is there.
 
     Args:
-        model: what was said.
         tree: the walk's.
-        resolve: from model values to scalars.
         frame: ``body``, ``body.frame`` or ``body.mass_center``.
     """
-    terminals = terminals_of(model)
+    resolve, terminals = tree.resolve, terminals_of(tree.system)
     if frame in terminals:
         body, placement = terminals[frame]
         x, y, z = (resolved(row, resolve) for row in placement.rotation)
         placement = Placement(resolved(placement.at, resolve), (x, y, z))
     else:
         body = frame.removesuffix(f".{MASS_CENTER}")
-        placement = Placement(mass_center(model.bodies[body], resolve), IDENTITY_MATRIX)
+        placement = Placement(mass_center(tree.system.bodies[body], resolve), IDENTITY_MATRIX)
     link, pose = tree.bodies[body]
     whole = compose(pose, placement, DUST)
     return Seat(link, whole.at, whole.rotation)

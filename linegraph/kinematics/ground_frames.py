@@ -18,12 +18,11 @@ from linegraph.spatial.vector import ZERO, Matrix, Vector, add, cross, dot, subt
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.components.constraints.base import Pose
-    from linegraph.kinematics.arms import Arm
-    from linegraph.kinematics.links import KinematicTree, Seat
+    from linegraph.kinematics.links import Seat
     from linegraph.kinematics.state_layout import Freedom
+    from linegraph.kinematics.tree_state import TreeState
 
 
 class GroundFrame(NamedTuple):
@@ -62,17 +61,12 @@ class GroundFrame(NamedTuple):
 GROUND_FRAME = GroundFrame(IDENTITY_MATRIX, ZERO, ZERO, ZERO, ZERO, ZERO)
 
 
-def frames(
-    tree: KinematicTree,
-    algebra: Algebra,
-    crossed: Sequence[Arm],
-    acceleration: Iterable[Scalar] | None = None,
-) -> list[GroundFrame]:
+def frames(state: TreeState, acceleration: Iterable[Scalar] | None = None) -> list[GroundFrame]:
     """Every link's working frame; with no v̇ given, accelerations are those at v̇ = 0."""
     a = None if acceleration is None else tuple(acceleration)
     found: list[GroundFrame] = []
-    for link, arm in zip(tree.links, crossed, strict=True):
-        set_label(algebra, f"place in ground, {link.caption}")
+    for link, arm in zip(state.tree.links, state.arms, strict=True):
+        set_label(state.algebra, f"place in ground, {link.caption}")
         near = found[link.parent] if link.parent >= 0 else GROUND_FRAME
         turning = GROUND_FRAME if arm.level else near
         x, y, z = (arm.rotation.into(row) for row in near.rotation)
@@ -123,14 +117,15 @@ class Pair(NamedTuple):
 
 
 def along_velocities(
-    tree: KinematicTree, crossed: Sequence[Arm], found: Sequence[GroundFrame], pair: Pair
+    state: TreeState, found: Sequence[GroundFrame], pair: Pair
 ) -> Iterator[tuple[Freedom, Scalar]]:
     """What a force and a torque between two links do along each velocity: a column of Hᵀ, projected.
 
     Both are carried inward; where the two ways meet they cancel, but for torques that have ended in the
     inertia edge of a link that turns against ground.
     """
-    meeting, level = _meeting(tree, crossed, pair.head, pair.tail)
+    tree, arms = state.tree, state.arms
+    meeting, level = _meeting(state, pair.head, pair.tail)
     rest = ZERO
     for start, sign in ((pair.head, 1), (pair.tail, -1)):
         force = pair.force if sign > 0 else vector.negate(pair.force)
@@ -139,36 +134,32 @@ def along_velocities(
         while link != meeting:
             frame = found[link]
             about = add(torque, cross(subtract(point, frame.origin), force))
-            yield from _projected(tree, crossed, found, link, about, force)
-            if crossed[link].level:
+            yield from _projected(state, found[link], link, about, force)
+            if arms[link].level:
                 torque, point = ZERO, frame.origin
             link = tree.links[link].parent
         if level and link >= 0:
             rest = add(rest, add(torque, cross(subtract(point, found[link].origin), force)))
     link = meeting
     while level and link >= 0:
-        yield from _projected(tree, crossed, found, link, rest, ZERO)
-        rest = ZERO if crossed[link].level else rest
+        yield from _projected(state, found[link], link, rest, ZERO)
+        rest = ZERO if arms[link].level else rest
         link = tree.links[link].parent
 
 
 def _projected(
-    tree: KinematicTree,
-    crossed: Sequence[Arm],
-    found: Sequence[GroundFrame],
-    link: int,
-    torque: Vector,
-    force: Vector,
+    state: TreeState, frame: GroundFrame, link: int, torque: Vector, force: Vector
 ) -> Iterator[tuple[Freedom, Scalar]]:
     """A force and a torque about a link's origin along its joint's velocities."""
-    motion, rotation = crossed[link].motion, found[link].rotation
-    for a, freedom in enumerate(tree.links[link].velocities):
+    motion, rotation = state.arms[link].motion, frame.rotation
+    for a, freedom in enumerate(state.tree.links[link].velocities):
         s, u = times(rotation, motion.angular[a]), times(rotation, motion.linear[a])
         yield freedom, freedom.ratio * (dot(s, torque) + dot(u, force))
 
 
-def _meeting(tree: KinematicTree, crossed: Sequence[Arm], head: int, tail: int) -> tuple[int, bool]:
+def _meeting(state: TreeState, head: int, tail: int) -> tuple[int, bool]:
     """The link where the ways of two links to ground meet, and whether a level link lies before it."""
+    tree, arms = state.tree, state.arms
     inward = []
     link = head
     while link >= 0:
@@ -177,10 +168,10 @@ def _meeting(tree: KinematicTree, crossed: Sequence[Arm], head: int, tail: int) 
     link = tail
     level = False
     while link >= 0 and link not in inward:
-        level = level or crossed[link].level
+        level = level or arms[link].level
         link = tree.links[link].parent
     for other in inward[: inward.index(link)] if link in inward else inward:
-        level = level or crossed[other].level
+        level = level or arms[other].level
     return link, level
 
 

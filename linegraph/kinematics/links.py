@@ -9,20 +9,25 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.components.joints import Joint
+from linegraph.components.parameters import resolver
 from linegraph.spatial.inertia import Moments, carried, joined, point_apart
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from linegraph.algebra.jets import Jet
+    from linegraph.algebra.protocol import Algebra
+    from linegraph.algebra.scalar import Scalar
     from linegraph.components.constraints import Constraint
     from linegraph.components.constraints.relation import Relation
     from linegraph.components.joints.base import Restriction
+    from linegraph.graph.forest import Step
     from linegraph.ir.program import Quantity
     from linegraph.kinematics.state_layout import Freedom, Layout, Place
+    from linegraph.model.system import System
     from linegraph.networks import Network
     from linegraph.spatial.placement import Placement
     from linegraph.spatial.rotation import Rotation
@@ -103,15 +108,26 @@ class Closure:
 class KinematicTree:
     """All links, every parent before its children, and what state and inputs consist of.
 
+    It belongs to one algebra: all its constants are scalars of that.
+
     Attributes:
+        system: what was said: bodies, elements, loads, outputs.
+        algebra: where its scalars live.
+        parameters: their scalars, by name.
+        links: every parent before its children.
+        gravity: the acceleration of free fall in ground axes (m/s^2).
         layout: coordinates and inputs, and which joint reads which.
         bodies: where each body's frame is: its link, -1 for ground, and its placement there.
         closures: what the tree leaves out.
         relations: constraints without edges, linear in velocities.
         ends: of every joint and constraint, branch or chord, where it is.
         network: the scalar networks.
+        walk: the branches of the translational tree, from ground outward.
     """
 
+    system: System
+    algebra: Algebra
+    parameters: Mapping[str, Scalar]
     links: tuple[Link, ...]
     gravity: Vector
     layout: Layout
@@ -120,6 +136,12 @@ class KinematicTree:
     relations: tuple[Relation, ...] = ()
     ends: Mapping[str, Closure] = field(default_factory=dict)
     network: Network | None = None
+    walk: tuple[Step, ...] = ()
+
+    @property
+    def resolve(self) -> Callable[[Any], Scalar]:
+        """From values of the model, numbers or formulas of parameters, to scalars of the algebra."""
+        return resolver(self.algebra, self.parameters)
 
     @property
     def closed(self) -> bool:

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from linegraph.algebra.differentiation import Gradient, Symbol
-    from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.kinematics.links import KinematicTree
 
@@ -33,13 +32,13 @@ def changes(tree: KinematicTree) -> list[Symbol]:
     return [(CHANGE, k) for k in range(tree.layout.mechanical)]
 
 
-def chain(tree: KinematicTree, algebra: Algebra, q: Sequence[Scalar]) -> dict[Symbol, Gradient]:
+def chain(tree: KinematicTree, q: Sequence[Scalar]) -> dict[Symbol, Gradient]:
     """The derivatives of every coordinate by the changes: the rows of N(q)."""
     found: dict[Symbol, Gradient] = {("q", i): {} for i in range(len(q))}
     size = len(tree.velocities)
     for k, change in enumerate(changes(tree)):
         unit = [int(j == k) for j in range(size)]
-        for i, slope in enumerate(coordinate_rates(tree, algebra, q, unit)):
+        for i, slope in enumerate(coordinate_rates(tree, q, unit)):
             if slope != 0:
                 found["q", i][change] = slope
     return found

@@ -60,6 +60,7 @@ class _Walk:
         self._formulation = formulation
         self._layout = layout
         self._algebra = algebra
+        self._parameters = parameters
         self._resolve = resolver(algebra, parameters)
         self._joints = {joint.name: joint for joint in model.joints}
         self._terminals = terminals_of(model)
@@ -79,6 +80,9 @@ class _Walk:
         ends = {end.component.name: end for end in self._ends()}
         set_label(self._algebra, "")
         return KinematicTree(
+            self._model,
+            self._algebra,
+            self._parameters,
             tuple(self._links),
             gravity,
             self._layout,
@@ -87,6 +91,7 @@ class _Walk:
             self._model.relations,
             ends,
             self._formulation.network,
+            tuple(self._formulation.translation.walk),
         )
 
     def _left_out(self, name: str) -> bool:

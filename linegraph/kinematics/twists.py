@@ -15,7 +15,6 @@ is the shortest depends on the joints and on what else is asked for, so all are 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -27,13 +26,11 @@ from linegraph.spatial.rotation import IDENTITY_MATRIX
 from linegraph.spatial.vector import ZERO, Matrix, Vector, add, cross, times
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator
 
-    from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
-    from linegraph.kinematics.arms import Arm
-    from linegraph.kinematics.links import KinematicTree
     from linegraph.kinematics.state_layout import Freedom
+    from linegraph.kinematics.tree_state import TreeState
 
 Twist = tuple[Vector, Vector]
 """Of the origin and angular, in this order, in ground axes: velocities or accelerations."""
@@ -58,35 +55,31 @@ class Outlook:
     """All links of a tree at a state, as seen from ground, over any algebra.
 
     Args:
-        tree: the links.
-        algebra: where to calculate.
-        crossed: the tree's joints at the state.
+        state: the links and where they are.
     """
 
-    def __init__(self, tree: KinematicTree, algebra: Algebra, crossed: Sequence[Arm]) -> None:
+    def __init__(self, state: TreeState) -> None:
         """Nothing is calculated before it is asked for."""
-        self.tree = tree
-        self.algebra = algebra
-        self.crossed = crossed
+        self.state = state
+        self.tree = state.tree
+        self.algebra = state.algebra
+        self.arms = state.arms
 
     @cached_property
     def frames(self) -> list[GroundFrame]:
         """Every link's frame in ground axes, accelerations at v̇ = 0."""
-        return frames(self.tree, self.algebra, self.crossed)
+        return frames(self.state)
 
     @cached_property
     def accelerations(self) -> list[Twist]:
         """Of every link the acceleration at v̇ = 0 in its own axes: linear, angular."""
-        weightless = replace(self.tree, gravity=ZERO)
-        return [
-            (spin.linear, spin.angular) for spin in spins(weightless, self.algebra, self.crossed)
-        ]
+        return [(spin.linear, spin.angular) for spin in spins(self.state, gravity=ZERO)]
 
     @cached_property
     def velocities(self) -> list[Twist]:
         """Of every link the velocity in its own axes: linear, angular."""
         found: list[Twist] = []
-        for link, arm in zip(self.tree.links, self.crossed, strict=True):
+        for link, arm in zip(self.tree.links, self.arms, strict=True):
             set_label(self.algebra, f"velocity, {link.caption}")
             linear, angular = found[link.parent] if link.parent >= 0 else (ZERO, ZERO)
             linear = arm.rotation.into(add(linear, cross(angular, arm.at)))
@@ -102,7 +95,7 @@ class Outlook:
 
     def arm(self, i: int) -> Vector:
         """From the origin of a link's parent to its own."""
-        return times(self.rotation(self.tree.links[i].parent), self.crossed[i].at)
+        return times(self.rotation(self.tree.links[i].parent), self.arms[i].at)
 
     def way(self, tip: int) -> Iterator[int]:
         """The links from a tip to ground."""
@@ -112,7 +105,7 @@ class Outlook:
 
     def moved(self, i: int) -> Iterator[tuple[Freedom | None, Scalar, Vector, Vector]]:
         """Of each velocity of a joint its freedom, its rate, and linear and angular motion in ground axes."""
-        link, arm = self.tree.links[i], self.crossed[i]
+        link, arm = self.tree.links[i], self.arms[i]
         freedoms = link.velocities or (None,) * len(arm.rates)
         motion = zip(freedoms, arm.rates, arm.motion.linear, arm.motion.angular, strict=True)
         for freedom, rate, u, s in motion:
@@ -121,7 +114,7 @@ class Outlook:
     def out(self, tip: int, x: Vector) -> Vector:
         """A vector in a link's axes in those of ground, carried from link to link."""
         for i in self.way(tip):
-            x = self.crossed[i].rotation.out(x)
+            x = self.arms[i].rotation.out(x)
         return x
 
 
@@ -145,7 +138,7 @@ def columns(view: Outlook, tip: int) -> list[Column]:
             for freedom, rate, u, s in view.moved(i)
         ]
         found = own + found
-        turning = turning and not view.crossed[i].level
+        turning = turning and not view.arms[i].level
     return found
 
 
@@ -155,7 +148,7 @@ def _levers(view: Outlook, tip: int) -> Iterator[tuple[int, Vector]]:
     for i in view.way(tip):
         yield i, lever
         set_label(view.algebra, f"place, {view.tree.links[i].caption}")
-        lever = add(ZERO if view.crossed[i].level else lever, view.arm(i))
+        lever = add(ZERO if view.arms[i].level else lever, view.arm(i))
 
 
 def matrix(found: Iterable[Column], size: int) -> list[list[Scalar]]:
@@ -208,7 +201,7 @@ def _by_products(view: Outlook, tip: int) -> Twist:
     """
     linear = angular = turned = ZERO
     for i, lever in reversed(list(_levers(view, tip))):
-        link, arm = view.tree.links[i], view.crossed[i]
+        link, arm = view.tree.links[i], view.arms[i]
         set_label(view.algebra, f"products of velocities, {link.caption}")
         push = spin = ZERO
         before = turned

@@ -82,12 +82,12 @@ class Shortened(NamedTuple):
     at_rest: tuple[tuple[Moments, Link], ...] = ()
 
     def rehoused(
-        self, wrenches: Iterable[tuple[Vector, Vector]], crossed: Sequence[Arm]
+        self, wrenches: Iterable[tuple[Vector, Vector]], arms: Sequence[Arm]
     ) -> list[tuple[Vector, Vector]]:
         """Forces and torques given in the frames of the walk, in and about those of the tree."""
         found = [(ZERO, ZERO)] * len(self.tree.links)
         for (force, torque), place, pose in zip(wrenches, self.places, self.poses, strict=True):
-            turned, turn = rotation_of(pose.rotation), crossed[place].turn
+            turned, turn = rotation_of(pose.rotation), arms[place].turn
             about = subtract(torque, cross(pose.at, force))
             found[place] = (turn.out(turned.into(force)), turn.out(turned.into(about)))
         return found

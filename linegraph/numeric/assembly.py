@@ -186,7 +186,7 @@ class _Judgement:
         v = [0.0] * len(self.tree.velocities)
         joints = {n for n, end in self.tree.ends.items() if isinstance(end.component, Joint)}
         for t in (self.numeric.t, self.numeric.t + 0.37):
-            numeric = self.numeric.at(t)
+            numeric = self.numeric.at_time(t)
             rates = -self.search.rates(q, v, numeric)
             amiss = np.abs(left.T @ rates)
             if amiss.max(initial=0.0) > 1e-6 * np.abs(rates).max(initial=0.0):

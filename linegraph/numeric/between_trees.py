@@ -10,7 +10,6 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from linegraph.components.joints import Free, Spherical
-from linegraph.kinematics.arms import arms
 from linegraph.kinematics.ground_frames import (
     GROUND_FRAME,
     GroundFrame,
@@ -78,7 +77,7 @@ def _copied(
 def body_frames(numeric: Numeric, q: Sequence[float], v: Sequence[float]) -> dict[str, GroundFrame]:
     """The motion of every body's own frame."""
     tree = numeric.tree
-    moving = frames(tree, numeric.algebra, arms(tree, numeric.algebra, q, v))
+    moving = frames(numeric.at(q, v).state)
     return {
         body: seated(moving, Seat(link, pose.at, pose.rotation))
         for body, (link, pose) in tree.bodies.items()

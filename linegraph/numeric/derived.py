@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from linegraph.algebra.factorization import singular
 from linegraph.dynamics.regularity import Idle, massless, refusal, sample_tree
 from linegraph.dynamics.symbol_names import symbol_names
-from linegraph.dynamics.whole_system import network_entries
 from linegraph.errors import ModelError
 from linegraph.formulation.formulate import formulate
 from linegraph.kinematics.formulated import Formulated
@@ -97,10 +96,7 @@ class Derived(Formulated):
         numeric.tree.normalise(q)
         v = [draw.uniform(-1, 1) for _ in numeric.tree.velocities]
         try:
-            return [
-                (i, j, float(x))
-                for i, j, x in network_entries(numeric.exchange(q, v), numeric.algebra)
-            ]
+            return [(i, j, float(x)) for i, j, x in numeric.at(q, v).stored]
         except (ModelError, ArithmeticError):
             return None  # no state like any other: what is wrong there is said at run time
 

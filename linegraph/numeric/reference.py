@@ -2,62 +2,59 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from linegraph.algebra.protocol import Floats
-from linegraph.components.parameters import Parameter, resolver, valued
-from linegraph.dynamics import orthogonality
-from linegraph.dynamics.applied_forces import Applied, applied
-from linegraph.dynamics.chords import Chords, equations
-from linegraph.dynamics.circuit_lengths import ConstraintSizes, Given, sizes
-from linegraph.dynamics.law_names import relations
+from linegraph.components.parameters import Parameter, valued
+from linegraph.dynamics.circuit_lengths import ConstraintSizes, sizes
+from linegraph.dynamics.equations import StateEquations
 from linegraph.dynamics.mass_matrix import mass_matrix
-from linegraph.dynamics.whole_system import (
-    exchange_at,
-    network_entries,
-    united_inverse_dynamics,
-    united_mass_matrix,
-)
 from linegraph.errors import ModelError
-from linegraph.kinematics.arms import Arm, arms, coordinate_rates
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from linegraph.algebra.scalar import Scalar
+    from linegraph.dynamics.applied_forces import Applied
+    from linegraph.dynamics.chords import Chords
     from linegraph.dynamics.network_state import Exchange
     from linegraph.kinematics.formulated import Formulated
     from linegraph.kinematics.links import KinematicTree
-    from linegraph.model.system import System
+
+Rows = list[list[float]]
 
 
-@dataclass(frozen=True)
 class Numeric:
     """The derivation run over floats: one state at a time, slow, exact to rounding.
 
-    Attributes:
-        tree: the links, in numbers.
-        model: what elements act; None to leave them out.
-        algebra: the time and the inputs.
-        parameters: their values.
-        derivation: what it is of.
+    Args:
+        tree: the links, in numbers; its algebra has the time and the inputs.
+        derivation: what it is of; None for a tree that was made otherwise.
     """
 
-    tree: KinematicTree
-    model: System | None = None
-    algebra: Floats = field(default_factory=Floats)
-    parameters: Mapping[str, Scalar] = field(default_factory=dict)
-    derivation: Formulated | None = None
+    def __init__(self, tree: KinematicTree, derivation: Formulated | None = None) -> None:
+        """Nothing is evaluated yet."""
+        self.tree = tree
+        self.derivation = derivation
+
+    @property
+    def algebra(self) -> Floats:
+        """The time and the inputs."""
+        return cast("Floats", self.tree.algebra)
+
+    @property
+    def parameters(self) -> Mapping[str, Scalar]:
+        """The parameters' values."""
+        return self.tree.parameters
 
     @property
     def t(self) -> float:
-        """The time."""
+        """The time (s)."""
         return float(self.algebra.arguments.get("t", 0.0))
 
-    def at(self, t: float) -> Numeric:
-        """The same at another time."""
+    def at_time(self, t: float) -> Numeric:
+        """The same at another time (s)."""
         if self.derivation is None:
             return self
         return over_floats(self.derivation, self.parameters, t, self.algebra.arguments["u"])
@@ -65,98 +62,76 @@ class Numeric:
     @property
     def resolve(self) -> Callable[[Any], Scalar]:
         """From model values to numbers."""
-        return resolver(self.algebra, self.parameters)
+        return self.tree.resolve
 
-    def mass_matrix(self, q: Sequence[float]) -> list[list[float]]:
-        """M(q)."""
-        return self.united_mass_matrix(q, [0.0] * len(self.tree.velocities))
-
-    def mechanical_mass_matrix(self, q: Sequence[float]) -> list[list[float]]:
-        """Its part of mechanics, without what networks add."""
-        at_rest = [0.0] * len(self.tree.velocities)
-        rows = mass_matrix(self.tree, self.algebra, self._arms(q, at_rest))
-        return [row[: self.tree.layout.mechanical] for row in rows[: self.tree.layout.mechanical]]
-
-    def united_mass_matrix(self, q: Sequence[float], v: Sequence[float]) -> list[list[float]]:
-        """𝓜(q, v): the mass matrix where what networks store depends on their states."""
-        entries = network_entries(self.exchange(q, v), self.algebra)
-        return united_mass_matrix(self.tree, self.algebra, self._arms(q, v), entries)
-
-    def exchange(self, q: Sequence[float], v: Sequence[float]) -> Exchange | None:
-        """The networks at a state."""
-        if self.model is None or self.tree.network is None:
-            return None
-        chords = Chords(self.tree, self.algebra, self._arms(q, v), self.parameters)
-        state = (tuple(q), tuple(v))
-        return exchange_at(self.model, self.tree, self.algebra, self.parameters, chords, state)
-
-    def bias(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
-        """h(q, v)."""
-        return self.inverse_dynamics(q, v, None)
-
-    def inverse_dynamics(
-        self, q: Sequence[float], v: Sequence[float], a: Sequence[float] | None
-    ) -> list[float]:
-        """M a + h."""
-        crossed = self._arms(q, v)
-        acting = self.applied(q, v, driven=False)
-        entries = network_entries(self.exchange(q, v), self.algebra) if a is not None else ()
-        return united_inverse_dynamics(self.tree, self.algebra, crossed, entries, a, acting)
+    def at(self, q: Sequence[float], v: Sequence[float] | None = None) -> StateEquations:
+        """The equations at a state; at rest where no v is given."""
+        velocities = [0.0] * len(self.tree.velocities) if v is None else v
+        return StateEquations(self.tree, q, velocities)
 
     @cached_property
     def sizes(self) -> ConstraintSizes:
         """What constraints and velocities are measured by."""
-        given = Given(self.tree, self.algebra, self.parameters)
-        return sizes(given, equations(self.tree))
+        return sizes(self.tree)
+
+    def mass_matrix(self, q: Sequence[float], v: Sequence[float] | None = None) -> Rows:
+        """M(q); of networks whose stores depend on their states M(q, v)."""
+        return self.at(q, v).mass_matrix
+
+    def mechanical_mass_matrix(self, q: Sequence[float]) -> Rows:
+        """Its part of mechanics, without what networks add."""
+        rows, size = mass_matrix(self.at(q).state), self.tree.layout.mechanical
+        return [row[:size] for row in rows[:size]]
+
+    def exchange(self, q: Sequence[float], v: Sequence[float]) -> Exchange | None:
+        """The networks at a state."""
+        return self.at(q, v).networks
+
+    def bias(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
+        """h(q, v)."""
+        return self.at(q, v).bias
+
+    def inverse_dynamics(
+        self, q: Sequence[float], v: Sequence[float], a: Sequence[float]
+    ) -> list[float]:
+        """M a + h."""
+        return self.at(q, v).inverse_dynamics(a)
+
+    def forces(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
+        """Q: joint efforts, and what inputs drive."""
+        return self.at(q, v).forces
 
     def coordinate_rates(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
         """N(q) v."""
-        return coordinate_rates(self.tree, self.algebra, q, v)
+        return self.at(q, v).coordinate_rates
 
     def constraints(self, q: Sequence[float]) -> list[float]:
         """φ(q, t), one for each constraint with an equation of position."""
-        return self.chords(q, [0.0] * len(self.tree.velocities)).position()
+        return self.at(q).constraints
 
-    def constraint_jacobian(self, q: Sequence[float]) -> list[list[float]]:
+    def constraint_jacobian(self, q: Sequence[float]) -> Rows:
         """J(q, t)."""
-        return self.chords(q, [0.0] * len(self.tree.velocities)).jacobian()
+        return self.at(q).jacobian
 
     def constraint_rates(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
         """J v - b, which is 0 where v is allowed."""
-        return self.chords(q, v).rates(v)
+        return self.at(q, v).constraint_rates
 
     def constraint_bias(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
         """γ of J v̇ = γ."""
-        return self.chords(q, v).bias()
+        return self.at(q, v).constraint_bias
 
     def chords(self, q: Sequence[float], v: Sequence[float]) -> Chords:
         """The constraints at a state."""
-        assert self.model is not None
-        state = (tuple(q), tuple(v))
-        rates = self.coordinate_rates(q, v) if self.tree.relations else []
-        found = relations(self.model, self.tree, self.algebra, self.parameters, state, rates)
-        return Chords(self.tree, self.algebra, self._arms(q, v), self.parameters, found)
+        return self.at(q, v).chords
 
     def energy(self, q: Sequence[float], v: Sequence[float]) -> tuple[float, ...]:
-        """Kinetic and potential energy, that of springs included; then what networks store, if any."""
-        kinetic, potential = orthogonality.energy(self.tree, self.algebra, self._arms(q, v))
-        acting = self.applied(q, v, driven=False)
-        exchange = self.exchange(q, v)
-        stored = () if exchange is None else (exchange.energy(),)
-        return kinetic, potential + (acting.potential if acting else 0), *stored
+        """Kinetic and potential energy (J), that of springs included; then what networks store, if any."""
+        return self.at(q, v).energy
 
-    def applied(self, q: Sequence[float], v: Sequence[float], *, driven: bool) -> Applied | None:
+    def applied(self, q: Sequence[float], v: Sequence[float], *, driven: bool) -> Applied:
         """What elements and loads do that depend on inputs (`driven`), or those that do not."""
-        if self.model is None:
-            return None
-        state = (tuple(q), tuple(v))
-        crossed = self._arms(q, v)
-        return applied(
-            self.model, self.tree, self.algebra, self.parameters, crossed, *state, driven=driven
-        )
-
-    def _arms(self, q: Sequence[float], v: Sequence[float]) -> list[Arm]:
-        return arms(self.tree, self.algebra, q, v)
+        return self.at(q, v).applied(driven=driven)
 
 
 def over_floats(
@@ -190,4 +165,4 @@ def over_floats(
 
     algebra = Floats(t=t, u=inputs)
     values = valued(formulated.system.parameters.values(), algebra, given)
-    return Numeric(formulated.tree(algebra, values), formulated.system, algebra, values, formulated)
+    return Numeric(formulated.tree(algebra, values), formulated)

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.errors import ModelError
-from linegraph.kinematics.arms import Arm, arms
 from linegraph.spatial import vector
 from linegraph.spatial.rotation import IDENTITY_MATRIX, Full, Inertia, product, square
 from linegraph.spatial.vector import ZERO, Matrix, Vector, add, cross, dot, scale, subtract
@@ -22,9 +21,10 @@ from linegraph.spatial.vector import ZERO, Matrix, Vector, add, cross, dot, scal
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
+    from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import KinematicTree, Link
+    from linegraph.kinematics.tree_state import TreeState
 
 Integers = list[list[int]]
 Vectors = list[list[Vector]]
@@ -71,9 +71,7 @@ class Resolved(NamedTuple):
     remainder: Vector
 
 
-def paper_matrices(
-    tree: KinematicTree, algebra: Algebra, q: Iterable[Scalar], v: Iterable[Scalar]
-) -> PaperMatrices:
+def paper_matrices(state: TreeState) -> PaperMatrices:
     """Build the matrices literally and multiply them out.
 
     With H = P^-1 and Λ = S x (H C) + K,
@@ -84,16 +82,16 @@ def paper_matrices(
     Raises:
         ModelError: a link without mass has a first moment, hence no mass centre.
     """
-    crossed = arms(tree, algebra, q, v)
-    bodies = resolved(tree, crossed)
+    tree = state.tree
+    bodies = resolved(state)
     p, h = _topology(tree)
-    c = arm_vectors(tree, crossed, bodies)
-    s, k = _axes(tree, crossed, bodies)
+    c = arm_vectors(state, bodies)
+    s, k = _axes(state, bodies)
     sh = _gather(s, h)
     lam = _lever(s, h, c, k)
     mass = _carried_mass(h, bodies)
     remainder = [
-        add(head_remainder(tree, crossed, bodies, c, x), turned(body, c[x][x]))
+        add(head_remainder(state, bodies, c, x), turned(body, c[x][x]))
         for x, body in enumerate(bodies)
     ]
     size, n = len(s), range(len(bodies))
@@ -124,7 +122,7 @@ def _topology(tree: KinematicTree) -> tuple[Integers, Integers]:
     return p, h
 
 
-def resolved(tree: KinematicTree, crossed: list[Arm]) -> list[Resolved]:
+def resolved(state: TreeState) -> list[Resolved]:
     """Orientation, ω and ε of every link, by H^T.
 
     ε_i = Σ_j H_ji w_j with w_j = ω_p x s q̇ + Σ_ab (∂s_a/∂q_b) q̇_a q̇_b, the second being the derivative of
@@ -135,7 +133,7 @@ def resolved(tree: KinematicTree, crossed: list[Arm]) -> list[Resolved]:
         ModelError: a link without mass has a first moment.
     """
     bodies: list[Resolved] = []
-    for link, arm in zip(tree.links, crossed, strict=True):
+    for link, arm in zip(state.tree.links, state.arms, strict=True):
         near = bodies[link.parent] if link.parent >= 0 else None
         outer = near.rotation if near else IDENTITY_MATRIX
         omega = near.angular if near else ZERO
@@ -195,29 +193,28 @@ def _central(link: Link) -> tuple[Scalar, Vector, Inertia]:
     )
 
 
-def arm_vectors(tree: KinematicTree, crossed: list[Arm], bodies: list[Resolved]) -> Vectors:
+def arm_vectors(state: TreeState, bodies: list[Resolved]) -> Vectors:
     """C: from each joint to the mass centre beyond it, and to it from the centre before it."""
     size = len(bodies)
     c: Vectors = [[ZERO] * size for _ in range(size)]
-    for k, link in enumerate(tree.links):
+    for k, (link, arm) in enumerate(zip(state.tree.links, state.arms, strict=True)):
         c[k][k] = bodies[k].center
         if link.parent >= 0:
             near = bodies[link.parent]
-            c[link.parent][k] = subtract(Full(near.rotation).out(crossed[k].at), near.center)
+            c[link.parent][k] = subtract(Full(near.rotation).out(arm.at), near.center)
     return c
 
 
-def _axes(
-    tree: KinematicTree, crossed: list[Arm], bodies: list[Resolved]
-) -> tuple[Vectors, Vectors]:
+def _axes(state: TreeState, bodies: list[Resolved]) -> tuple[Vectors, Vectors]:
     """S and K: what each coordinate turns and moves at each joint."""
+    tree = state.tree
     size, n = len(tree.velocities), len(bodies)
     s: Vectors = [[ZERO] * n for _ in range(size)]
     k: Vectors = [[ZERO] * n for _ in range(size)]
     for j, link in enumerate(tree.links):
         out = Full(bodies[j].rotation).out
         for a, freedom in enumerate(link.velocities):
-            motion = crossed[j].motion
+            motion = state.arms[j].motion
             s[freedom.index][j] = scale(freedom.ratio, out(motion.angular[a]))
             k[freedom.index][j] = scale(freedom.ratio, out(motion.linear[a]))
     return s, k
@@ -245,19 +242,18 @@ def _carried_mass(h: Integers, bodies: list[Resolved]) -> list[list[Scalar]]:
     return [[sum(h[x][i] * bodies[i].mass * h[y][i] for i in n) for y in n] for x in n]
 
 
-def head_remainder(
-    tree: KinematicTree, crossed: list[Arm], bodies: list[Resolved], c: Vectors, k: int
-) -> Vector:
+def head_remainder(state: TreeState, bodies: list[Resolved], c: Vectors, k: int) -> Vector:
     """Acceleration of joint k's head less that of the centre before it, with v̇ = 0.
 
     With that of the arm beyond the joint it makes G_k.
     """
     out = Full(bodies[k].rotation).out
-    g = out(linear_remainder(crossed[k]))
-    parent = tree.links[k].parent
+    arm = state.arms[k]
+    g = out(linear_remainder(arm))
+    parent = state.tree.links[k].parent
     if parent >= 0:
         near = bodies[parent]
-        u = out(vector.combine(crossed[k].rates, crossed[k].motion.linear))
+        u = out(vector.combine(arm.rates, arm.motion.linear))
         g = add(g, turned(near, c[parent][k]))
         g = add(g, scale(2, cross(near.angular, u)))
     return g

@@ -17,7 +17,6 @@ from functools import reduce
 from typing import TYPE_CHECKING, Any
 
 from linegraph.errors import ModelError
-from linegraph.kinematics.arms import arms
 from linegraph.paper.joint_form import (
     Resolved,
     angular_remainder,
@@ -34,11 +33,10 @@ from linegraph.spatial.vector import ZERO, Matrix, Vector, add, cross, dot, nega
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
     from linegraph.dynamics.applied_forces import Applied
-    from linegraph.kinematics.arms import Arm
     from linegraph.kinematics.links import KinematicTree
+    from linegraph.kinematics.tree_state import TreeState
 
 Integers = list[list[int]]
 Column = list[Vector]
@@ -114,13 +112,7 @@ class PrintedMatrices(StarTree):
     B: list[Scalar]
 
 
-def printed_matrices(
-    tree: KinematicTree,
-    algebra: Algebra,
-    q: Iterable[Scalar],
-    v: Iterable[Scalar],
-    applied: Applied | None = None,
-) -> PrintedMatrices:
+def printed_matrices(state: TreeState, applied: Applied | None = None) -> PrintedMatrices:
     """The star tree at (q, v) and its equations (12)-(15).
 
     The basement is ground and what only prescribed joints connect to it. `applied` are forces and torques
@@ -129,7 +121,7 @@ def printed_matrices(
     Raises:
         ModelError: not exactly one body is on the basement; or a link without mass has a first moment.
     """
-    return equations(_star_tree(tree, arms(tree, algebra, q, v), applied))
+    return equations(_star_tree(state, applied))
 
 
 def equations(star: StarTree) -> PrintedMatrices:
@@ -235,11 +227,12 @@ class Operators:
         return each(cross, self.tail(x), self._star.X)
 
 
-def _star_tree(tree: KinematicTree, crossed: list[Arm], applied: Applied | None) -> StarTree:
+def _star_tree(state: TreeState, applied: Applied | None) -> StarTree:
     """The edges of the star tree, (1)-(5), with their terminal and connecting equations, (6)-(7)."""
+    tree = state.tree
     links, parents = _bodies(tree)
-    bodies = resolved(tree, crossed)
-    c = arm_vectors(tree, crossed, bodies)
+    bodies = resolved(state)
+    c = arm_vectors(state, bodies)
     ends, chords = ["C_1"], ["C_1 -> B_1"]
     for j, parent in enumerate(parents[1:], 2):
         ends += [f"B_{j}", f"C_{j}"]
@@ -250,7 +243,7 @@ def _star_tree(tree: KinematicTree, crossed: list[Arm], applied: Applied | None)
     masses: list[Scalar] = [0] * len(chords)
     inertias = [NO_TENSOR] * len(chords)
     for j, i in enumerate(links):
-        arm, out = crossed[i], Full(bodies[i].rotation).out
+        arm, out = state.arms[i], Full(bodies[i].rotation).out
         outer, inner = 2 * j, 2 * j - 1
         masses[outer], inertias[outer] = bodies[i].mass, bodies[i].inertia.rows
         x[outer] = negate(c[i][i])
@@ -266,8 +259,8 @@ def _star_tree(tree: KinematicTree, crossed: list[Arm], applied: Applied | None)
             y_t[outer] = add(y_t[outer], force)
             # about the mass centre instead of the link's origin
             y_r[outer] = add(torque, cross(x[outer], force))
-    s, k = _axes(tree, crossed, bodies, links)
-    spin, spin_rate, pull = _basement_motion(tree, crossed, bodies, c, links[0])
+    s, k = _axes(state, bodies, links)
+    spin, spin_rate, pull = _basement_motion(state, bodies, c, links[0])
     return StarTree(
         [f"0 -> {end}" for end in ends],
         chords,
@@ -330,15 +323,14 @@ def _topology(parents: list[int]) -> tuple[Integers, Integers]:
     return p, transposed(columns)
 
 
-def _axes(
-    tree: KinematicTree, crossed: list[Arm], bodies: list[Resolved], links: list[int]
-) -> tuple[Rows, Rows]:
+def _axes(state: TreeState, bodies: list[Resolved], links: list[int]) -> tuple[Rows, Rows]:
     """S and K."""
+    tree = state.tree
     chords = 2 * len(links) - 1
     s: Rows = [zeros(chords) for _ in tree.velocities]
     k: Rows = [zeros(chords) for _ in tree.velocities]
     for j, i in enumerate(links):
-        motion, out = crossed[i].motion, Full(bodies[i].rotation).out
+        motion, out = state.arms[i].motion, Full(bodies[i].rotation).out
         for a, freedom in enumerate(tree.links[i].velocities):
             s[freedom.index][2 * j] = scale(-freedom.ratio, out(motion.angular[a]))
             # branch 1 has no column: what moves B_1 counts against chord 1
@@ -348,13 +340,14 @@ def _axes(
 
 
 def _basement_motion(
-    tree: KinematicTree, crossed: list[Arm], bodies: list[Resolved], c: Rows, first: int
+    state: TreeState, bodies: list[Resolved], c: Rows, first: int
 ) -> tuple[Vector, Vector, Vector]:
     """Angular velocity and acceleration of the basement and the acceleration of B_1."""
-    pull = head_remainder(tree, crossed, bodies, c, first)
+    tree = state.tree
+    pull = head_remainder(state, bodies, c, first)
     base = i = tree.links[first].parent
     while i >= 0:
-        step = add(head_remainder(tree, crossed, bodies, c, i), turned(bodies[i], c[i][i]))
+        step = add(head_remainder(state, bodies, c, i), turned(bodies[i], c[i][i]))
         pull = add(pull, step)
         i = tree.links[i].parent
     if base < 0:

@@ -29,12 +29,12 @@ if TYPE_CHECKING:
     from linegraph.algebra.differentiation import Symbol
     from linegraph.algebra.scalar import Scalar
     from linegraph.ir.program import Check, Program, Routine
-    from linegraph.programs.workspace import Functions
+    from linegraph.programs.workspace import Workspace
 
 ALONG = "by changes of q along the velocities, dq = N(q) d"
 
 
-def inverse_dynamics(f: Functions) -> tuple[Program | Routine, ...]:
+def inverse_dynamics(f: Workspace) -> tuple[Program | Routine, ...]:
     """∂τ/∂q, ∂τ/∂v and ∂τ/∂a = M."""
     changes, velocities, _ = variables(f)
     found = of_motion(f, f.passive, [0] * len(f.v), [*changes, *velocities])
@@ -42,13 +42,13 @@ def inverse_dynamics(f: Functions) -> tuple[Program | Routine, ...]:
     results = (
         matrix("dtau_dq", found[:count], f"derivatives {ALONG}"),
         matrix("dtau_dv", found[count:], "derivatives by v"),
-        matrix("dtau_da", turned(f.mass_rows), "derivatives by a, which are M"),
+        matrix("dtau_da", turned(f.mass_matrix), "derivatives by a, which are M"),
     )
     about = "Derivatives of inverse dynamics tau = M(q) a + h(q, v)."
     return (f.program("inverse_dynamics_derivatives", about, ("q", "v", "a"), results),)
 
 
-def forward_dynamics(f: Functions) -> tuple[Program | Routine, ...]:
+def forward_dynamics(f: Workspace) -> tuple[Program | Routine, ...]:
     """∂a/∂q, ∂a/∂v and ∂a/∂u.
 
     Raises:
@@ -67,7 +67,7 @@ def forward_dynamics(f: Functions) -> tuple[Program | Routine, ...]:
     return (f.program("forward_dynamics_derivatives", about, _STATE, results, checks, status=True),)
 
 
-def linearize(f: Functions) -> tuple[Program | Routine, ...]:
+def linearize(f: Workspace) -> tuple[Program | Routine, ...]:
     """A and B of ẋ = f(x, u) on the tangent space."""
     if f.tree.closed:
         return closed_derivatives.linearize(f)
@@ -91,7 +91,7 @@ def linearize(f: Functions) -> tuple[Program | Routine, ...]:
     return (f.program("linearize", about, _STATE, results, checks, status=True),)
 
 
-def inverse_dynamics_by_parameters(f: Functions) -> tuple[Program | Routine, ...]:
+def inverse_dynamics_by_parameters(f: Workspace) -> tuple[Program | Routine, ...]:
     """∂τ/∂p.
 
     Raises:
@@ -104,7 +104,7 @@ def inverse_dynamics_by_parameters(f: Functions) -> tuple[Program | Routine, ...
     return (f.program("inverse_dynamics_parameter_derivatives", about, given, results),)
 
 
-def forward_dynamics_by_parameters(f: Functions) -> tuple[Program | Routine, ...]:
+def forward_dynamics_by_parameters(f: Workspace) -> tuple[Program | Routine, ...]:
     """∂a/∂p.
 
     Raises:
@@ -119,7 +119,7 @@ def forward_dynamics_by_parameters(f: Functions) -> tuple[Program | Routine, ...
     return (f.program(name, about, _STATE, results, checks, status=True),)
 
 
-def counts(f: Functions, chosen: Iterable[str]) -> tuple[tuple[str, int], ...]:
+def counts(f: Workspace, chosen: Iterable[str]) -> tuple[tuple[str, int], ...]:
     """How many changes of q there are."""
     if not {"linearize", "inverse_dynamics_derivatives", "forward_dynamics_derivatives"} & {
         *chosen
@@ -129,7 +129,7 @@ def counts(f: Functions, chosen: Iterable[str]) -> tuple[tuple[str, int], ...]:
     return (("NT", count),)
 
 
-def listings(f: Functions, chosen: Iterable[str]) -> tuple[Listing, ...]:
+def listings(f: Workspace, chosen: Iterable[str]) -> tuple[Listing, ...]:
     """The entries of dx: changes d of position, then of velocities, under the names that these have."""
     if "linearize" not in chosen:
         return ()
@@ -155,22 +155,22 @@ _STATE = ("q", "v", "u")
 _BY_PARAMETERS = "derivatives by the parameters, in their order"
 
 
-def _parameters(f: Functions) -> list[Symbol]:
+def _parameters(f: Workspace) -> list[Symbol]:
     """The parameters that functions are given, in order."""
     if "p" not in f.head:
         problem = "its functions take no parameters, so there are no derivatives by them"
-        raise ModelError(f'model "{f.model.name}"', f"{problem}; keep them symbolic")
-    return [("p", p.name) for p in f.model.parameters.values() if not p.derived]
+        raise ModelError(f'model "{f.tree.system.name}"', f"{problem}; keep them symbolic")
+    return [("p", p.name) for p in f.tree.system.parameters.values() if not p.derived]
 
 
-def _require_open(f: Functions, instead: str = "") -> None:
+def _require_open(f: Workspace, instead: str = "") -> None:
     """Refuse constraints: what solves for a and lam decides as it runs."""
     if f.tree.closed:
         problem = "it has constraints, through whose solution accelerations are not differentiated"
-        raise ModelError(f'model "{f.model.name}"', problem + instead)
+        raise ModelError(f'model "{f.tree.system.name}"', problem + instead)
 
 
-def _accelerations(f: Functions, by: Sequence[Symbol]) -> tuple[Columns, tuple[Check, ...]]:
+def _accelerations(f: Workspace, by: Sequence[Symbol]) -> tuple[Columns, tuple[Check, ...]]:
     """The derivatives of a by each of some symbols, and what must not be zero for that."""
     slopes = of_motion(f, f.carried, f.driving, by)
     f.dag.label = "right-hand side Q - h"
@@ -178,16 +178,16 @@ def _accelerations(f: Functions, by: Sequence[Symbol]) -> tuple[Columns, tuple[C
     (a,), found_pivots = _solved(f, [right])
     at = substitution(f.dag, {("a", k): x for k, x in enumerate(a)})
     found, _ = _solved(f, [[-at(entry) for entry in column] for column in slopes])
-    bounds = [pivots.bound(x, f.mass_rows[i][i]) for i, x in enumerate(found_pivots)]
+    bounds = [pivots.bound(x, f.mass_matrix[i][i]) for i, x in enumerate(found_pivots)]
     return found, pivots.checks(f, found_pivots, bounds) + network_programs.checks(f)
 
 
-def _solved(f: Functions, rights: Columns) -> tuple[Columns, list[Scalar]]:
+def _solved(f: Workspace, rights: Columns) -> tuple[Columns, list[Scalar]]:
     """``M^-1`` times some columns, and the pivots; a column of one 1 is one of M^-1 itself."""
     f.dag.label = "M = L^T D L from the leaves to the root, then back"
     if not f.symmetric:
-        return solve_many(f.mass_rows, rights, f.tree.outward, symmetric=False)
-    factors = factored(f.mass_rows, f.tree.outward)
+        return solve_many(f.mass_matrix, rights, f.tree.outward, symmetric=False)
+    factors = factored(f.mass_matrix, f.tree.outward)
     f.dag.label = "derivatives of a"
     places = [_place_of_one(right) for right in rights]
     ones = [place for place in places if place is not None]

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from linegraph.ir.program import Program
-    from linegraph.programs.workspace import Functions
+    from linegraph.programs.workspace import Workspace
 
     Made = tuple[Program | Routine, ...]
     """The functions that a key of the register makes."""
@@ -30,7 +30,7 @@ WITH_LOOPS = ("project",)
 """The same with loops: the steps of `project` take the least kinetic energy."""
 
 
-def barred(functions: Functions) -> set[str]:
+def barred(functions: Workspace) -> set[str]:
     """The keys of what cannot be made as M is singular; none where it is regular."""
     if not functions.derivation.idle:
         return set()
@@ -56,7 +56,7 @@ def called(program: Program | Routine) -> tuple[str, ...]:
     return tuple(call.program for call in program.calls)
 
 
-def remarks(functions: Functions, omitted: Sequence[str]) -> tuple[str, ...]:
+def remarks(functions: Workspace, omitted: Sequence[str]) -> tuple[str, ...]:
     """What the head of a file says of functions that are left out."""
     if not omitted:
         return ()

@@ -14,7 +14,6 @@ from linegraph.dynamics.edge_quantities import (
     reaction_groups,
     reaction_quantities,
 )
-from linegraph.dynamics.outputs import observed
 from linegraph.ir.program import Argument, Call, Listing, Program, Quantity, Result, Routine, reads
 from linegraph.kinematics.state_layout import EFFORT_UNITS
 
@@ -22,21 +21,21 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from linegraph.algebra.scalar import Scalar
-    from linegraph.programs.workspace import Functions
+    from linegraph.programs.workspace import Workspace
 
 
-def across(f: Functions) -> tuple[Program | Routine, ...]:
+def across(f: Workspace) -> tuple[Program | Routine, ...]:
     """Velocity and angular velocity across every joint, body, element and constraint."""
     entries = tuple(
         x
-        for linear, angular in f.scheme.across().values()
+        for linear, angular in f.edges.across().values()
         for part in (linear, angular)
         for x in part
     )
-    entries += tuple(x for x, _ in f.scheme.network().values())
+    entries += tuple(x for x, _ in f.edges.network().values())
     about = (
         "Across variables: velocity and angular velocity of the head of every edge less its tail's"
-        f"{', then those of networks, tail over head' * (f.exchange is not None)}."
+        f"{', then those of networks, tail over head' * (f.networks is not None)}."
     )
     result = Result("X", (len(entries),), entries, "across variables, in ground axes")
     if reads("a", (result,)):
@@ -50,14 +49,14 @@ _THROUGH = (
 )
 
 
-def reactions(f: Functions) -> tuple[Program | Routine, ...]:
+def reactions(f: Workspace) -> tuple[Program | Routine, ...]:
     """What every joint and constraint exerts: from given accelerations, and from inputs."""
     names = _joints(f)
     entries: list[Scalar] = []
     for name in names:
-        force, torque = f.scheme.reaction(name)
+        force, torque = f.edges.reaction(name)
         entries += [*force, *torque]
-    entries += [y for _, y in f.scheme.network().values()]
+    entries += [y for _, y in f.edges.network().values()]
     if not entries:
         return ()
     result = Result("R", (len(entries),), tuple(entries), "reactions")
@@ -65,7 +64,7 @@ def reactions(f: Functions) -> tuple[Program | Routine, ...]:
     about = (
         "Reactions: the force and the torque, about the origin of its head frame, that every joint exerts on "
         f"its head, efforts included, for given accelerations{' and multipliers' * f.tree.closed}."
-        f"{_THROUGH * (f.exchange is not None)}"
+        f"{_THROUGH * (f.networks is not None)}"
     )
     at = f.program("reactions_at", about, given, (result,))
     arguments = ("q", "v", "u")
@@ -83,9 +82,9 @@ def reactions(f: Functions) -> tuple[Program | Routine, ...]:
     return at, under
 
 
-def drives(f: Functions) -> tuple[Program | Routine, ...]:
+def drives(f: Workspace) -> tuple[Program | Routine, ...]:
     """The driving forces of joints in prescribed motion."""
-    found = f.scheme.drives()
+    found = f.edges.drives()
     if not found:
         return ()
     result = Result("D", (len(found),), tuple(found.values()), "driving forces and torques")
@@ -93,10 +92,10 @@ def drives(f: Functions) -> tuple[Program | Routine, ...]:
     return (_after_dynamics(f, "drives", about, (result,)),)
 
 
-def power(f: Functions) -> tuple[Program | Routine, ...]:
+def power(f: Workspace) -> tuple[Program | Routine, ...]:
     """Through times across of every edge, and its sums."""
-    found, sums = powers(f.scheme.edges())
-    more, domains = network_powers(f.tree.network, f.scheme.network())
+    found, sums = powers(f.edges.edges())
+    more, domains = network_powers(f.tree.network, f.edges.network())
     found |= more
     sums = (*sums, *domains.values())
     meaning = ", ".join(["translation", "rotation with levers", *domains])
@@ -111,11 +110,11 @@ def power(f: Functions) -> tuple[Program | Routine, ...]:
     return (_after_dynamics(f, "power", about, results),)
 
 
-def outputs(f: Functions) -> tuple[Program | Routine, ...]:
+def outputs(f: Workspace) -> tuple[Program | Routine, ...]:
     """What the model asks for by name."""
-    if not f.model.outputs:
+    if not f.tree.system.outputs:
         return ()
-    entries, dynamic = observed(f.model, f.tree, f.dag, f.values, f.chords, _state(f), f.scheme)
+    entries, dynamic = f.outputs
     result = Result("y", (len(entries),), tuple(entries), "outputs")
     dynamic = dynamic or reads("a", (result,))
     about = "Outputs: the quantities that the model asks for by name."
@@ -124,60 +123,56 @@ def outputs(f: Functions) -> tuple[Program | Routine, ...]:
     return (f.program("outputs", about, ("q", "v"), (result,)),)
 
 
-def listings(f: Functions, chosen: Sequence[str]) -> tuple[Listing, ...]:
+def listings(f: Workspace, chosen: Sequence[str]) -> tuple[Listing, ...]:
     """The names of everything these functions return."""
     found = []
     if "across" in chosen:
-        names = list(f.scheme.across())
+        names = list(f.edges.across())
         heading = (
             "across variables: of each edge velocity and angular velocity x, y, z, in ground axes"
         )
-        more = network_quantities(f.model, f.tree.network, 0)
+        more = network_quantities(f.tree.system, f.tree.network, 0)
         quantities = (*across_quantities(names), *more)
         groups = (*across_groups(names), *((quantity, 1) for quantity in more))
         heading += "; of edges of networks one" * bool(more)
         found.append(Listing("across", "NX", heading, quantities, ("X",), groups))
-    more = network_quantities(f.model, f.tree.network, 1)
+    more = network_quantities(f.tree.system, f.tree.network, 1)
     if "reactions" in chosen and (_joints(f) or more):
-        quantities = (*reaction_quantities(f.model, _joints(f)), *more)
+        quantities = (*reaction_quantities(f.tree.system, _joints(f)), *more)
         groups = (*reaction_groups(_joints(f)), *((quantity, 1) for quantity in more))
-        axes = reaction_axes(f.model)
+        axes = reaction_axes(f.tree.system)
         heading = f"reactions: of each joint force and torque x, y, z on its head, in {axes} axes"
         heading += "; of edges of networks what flows through" * bool(more)
         found.append(Listing("reaction", "NR", heading, quantities, ("R",), groups))
-    driven = f.scheme.drives() if "drives" in chosen else {}
+    driven = f.edges.drives() if "drives" in chosen else {}
     if driven:
-        known = {q.name: q for joint in f.model.joints for q in joint.velocities()}
+        known = {q.name: q for joint in f.tree.system.joints for q in joint.velocities()}
         quantities = tuple(
             Quantity(name, EFFORT_UNITS[known[name].unit], f"drives {name}") for name in driven
         )
         found.append(Listing("drive", "ND", "driving forces", quantities, ("D",)))
     if "power" in chosen:
-        names = list(powers(f.scheme.edges())[0])
-        names += list(network_powers(f.tree.network, f.scheme.network())[0])
+        names = list(powers(f.edges.edges())[0])
+        names += list(network_powers(f.tree.network, f.edges.network())[0])
         quantities = tuple(Quantity(name, "W", f"power of {name}") for name in names)
         found.append(Listing("power", "NE", "powers", quantities, ("P",)))
-    if "outputs" in chosen and f.model.outputs:
+    if "outputs" in chosen and f.tree.system.outputs:
         quantities = tuple(
-            Quantity(o.name, o.unit, o.about or str(o.value)) for o in f.model.outputs
+            Quantity(o.name, o.unit, o.about or str(o.value)) for o in f.tree.system.outputs
         )
         found.append(Listing("output", "NY", "outputs", quantities, ("y",)))
     return tuple(found)
 
 
-def _joints(f: Functions) -> list[str]:
+def _joints(f: Workspace) -> list[str]:
     """Joints and constraints that have reactions."""
     return list(f.tree.ends)
 
 
-def _state(f: Functions) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
-    return tuple(f.q), tuple(f.v)
-
-
-def _after_dynamics(f: Functions, name: str, about: str, results: tuple[Result, ...]) -> Program:
+def _after_dynamics(f: Workspace, name: str, about: str, results: tuple[Result, ...]) -> Program:
     """A function that first solves for v̇ and λ."""
     solved = [Argument("a", len(f.v), f.texts["a"])]
     if f.tree.closed:
-        solved.append(Argument("lam", len(f.equations), f.texts["lam"]))
+        solved.append(Argument("lam", len(f.constraint_equations), f.texts["lam"]))
     call = Call("forward_dynamics", (*f.head, "q", "v", "u"), tuple(solved))
     return f.program(name, about, ("q", "v", "u"), results, (), (call,), status=True)

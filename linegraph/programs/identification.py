@@ -9,8 +9,7 @@ from linegraph.algebra.protocol import set_label
 from linegraph.algebra.residues import CONSTANT
 from linegraph.components.parameters import resolver
 from linegraph.components.scalar.forces import forces_of
-from linegraph.dynamics.applied_forces import Acting, depends_on_inputs
-from linegraph.dynamics.chords import Chords
+from linegraph.dynamics.applied_forces import depends_on_inputs, exerted
 from linegraph.dynamics.network_state import RESTING
 from linegraph.identification.regressor import Columns, Station, by_motions, by_wrenches
 from linegraph.identification.standard_parameters import (
@@ -39,13 +38,13 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.scalar import Scalar
     from linegraph.identification.standard_parameters import Axis, Bearings
-    from linegraph.programs.workspace import Functions
+    from linegraph.programs.workspace import Workspace
 
 REGRESSOR, VALUES = "regressor", "inertial_parameters"
 COUNT = "NPI"
 
 
-def regressor_program(f: Functions) -> tuple[Program | Routine, ...]:
+def regressor_program(f: Workspace) -> tuple[Program | Routine, ...]:
     """Y of ``tau = Y pi``, and the rest of tau where there is one."""
     if not f.tree.links:
         return ()
@@ -66,7 +65,7 @@ def regressor_program(f: Functions) -> tuple[Program | Routine, ...]:
     return (f.program(REGRESSOR, about, ("q", "v", "a"), tuple(results)),)
 
 
-def values_program(f: Functions) -> tuple[Program | Routine, ...]:
+def values_program(f: Workspace) -> tuple[Program | Routine, ...]:
     """The model's own pi."""
     if not f.tree.links:
         return ()
@@ -80,11 +79,11 @@ def values_program(f: Functions) -> tuple[Program | Routine, ...]:
     return (assemble(VALUES, about, given, (result,)),)
 
 
-def listings(f: Functions, chosen: Sequence[str]) -> tuple[Listing, ...]:
+def listings(f: Workspace, chosen: Sequence[str]) -> tuple[Listing, ...]:
     """The names of pi."""
     if not f.tree.links or not {REGRESSOR, VALUES} & {*chosen}:
         return ()
-    named = quantities(f.model, f.tree)
+    named = quantities(f.tree)
     heading = "standard parameters of links and joints"
     return (Listing("pi", COUNT, heading, named, ("pi",)),)
 
@@ -92,9 +91,9 @@ def listings(f: Functions, chosen: Sequence[str]) -> tuple[Listing, ...]:
 class _Split:
     """Inverse dynamics as a part that is linear in pi, and a rest."""
 
-    def __init__(self, f: Functions) -> None:
+    def __init__(self, f: Workspace) -> None:
         self._f = f
-        self._axes = axes(f.model, f.tree)
+        self._axes = axes(f.tree)
         self._a = f.symbols("a")
 
     def rows(self) -> list[list[Scalar]]:
@@ -108,7 +107,7 @@ class _Split:
         for n, axis in enumerate(self._axes):
             set_label(f.dag, f"parameters of joint {axis.joint}")
             rate = axis.rate(f.v)
-            width = resolver(f.dag, f.values)(axis.width)
+            width = resolver(f.dag, f.tree.parameters)(axis.width)
             units = (rate, f.dag.function("tanh", rate / width), axis.rate(self._a))
             for freedom in axis.row:
                 for place, unit in enumerate(units, count + 3 * n):
@@ -128,9 +127,9 @@ class _Split:
         every = ties(f.derivation, f.tree, folded="p" not in f.head)
         cheap = [tie for tie in every if tie.cheap]
         found = []
-        for tree, crossed, stations in ((f.tree, f.arms, walk), (f.short, f.crossed, there)):
+        for state, stations in ((f.state, walk), (f.working, there)):
             for route in (by_motions, by_wrenches):
-                columns = route(tree, f.dag, crossed, stations, self._a)
+                columns = route(state, stations, self._a)
                 found += [columns, tied(columns, cheap), tied(columns, every)]
         return min(found, key=_cost)
 
@@ -140,8 +139,9 @@ class _Split:
     def _bearings(self) -> Bearings:
         """Friction of joints; springs, loads and the like beside it."""
         f = self._f
-        passive = [e for e in f.model.force_elements if not depends_on_inputs(f.model, e.values())]
-        return friction_values(f.model, f.tree, f.dag, f.values, passive)
+        system = f.tree.system
+        passive = [e for e in system.force_elements if not depends_on_inputs(system, e.values())]
+        return friction_values(f.tree, passive)
 
     @cached_property
     def _stored(self) -> tuple[dict[str, Scalar], list[tuple[int, int, Scalar]]]:
@@ -150,14 +150,14 @@ class _Split:
         known = {axis.joint: axis for axis in self._axes}
         armature: dict[str, Scalar] = dict.fromkeys(known, 0)
         rest: list[tuple[int, int, Scalar]] = []
-        if f.exchange is None:
+        if f.networks is None:
             return armature, rest
-        network = f.exchange.network
+        network = f.networks.network
         first = len(network.states)
-        joints = {e.name: e.joint for e in forces_of(f.model.components)}
+        joints = {e.name: e.joint for e in forces_of(f.tree.system.components)}
         set_label(f.dag, "network, what it stores")
         for (i, j), entry in network.mass.items():
-            value = f.exchange.still(entry)
+            value = f.networks.still(entry)
             kinds = {symbol[0] for symbol in network.laws.calculus.support(entry)}
             if i == j >= first and kinds <= {"p", CONSTANT}:
                 seat = _seat(f, known, joints[network.ports[i - first].name])
@@ -165,15 +165,15 @@ class _Split:
                     axis, ratio = seat
                     armature[axis.joint] = armature[axis.joint] + ratio * ratio * value
                     continue
-            for row, left in f.exchange.projected(i):
-                for column, right in f.exchange.projected(j):
+            for row, left in f.networks.projected(i):
+                for column, right in f.networks.projected(j):
                     rest.append((row, column, left * right * value))
         return armature, rest
 
     def values(self) -> list[Scalar]:
         """Pi of the model's own numbers."""
         f = self._f
-        values = link_values(f.model, f.tree, f.dag, f.values)
+        values = link_values(f.tree)
         for axis in self._axes:
             found = (self._bearings.damping, self._bearings.friction, self._stored[0])
             values += [part[axis.joint] for part in found]
@@ -187,17 +187,14 @@ class _Split:
         total: list[Scalar] = [0] * len(f.v)
         others = [*self._bearings.others]
         if others or f.tree.network is not None:
-            chords = Chords(f.tree, f.dag, f.arms, f.values)
-            state = (tuple(f.q), tuple(f.v))
-            acting = Acting(f.model, f.tree, f.dag, f.values, chords, state, RESTING)
-            found = acting.of([*others, *forces_of(f.model.components)])
-            total = [-x for x in f.along(found)]
+            acting = [*others, *forces_of(f.tree.system.components)]
+            total = [-x for x in f.along(exerted(f.chords, acting, RESTING))]
         for row, column, entry in self._stored[1]:
             total[row] = total[row] + entry * self._a[column]
         return total
 
 
-def _seat(f: Functions, known: dict[str, Axis], joint: str | None) -> tuple[Axis, Scalar] | None:
+def _seat(f: Workspace, known: dict[str, Axis], joint: str | None) -> tuple[Axis, Scalar] | None:
     if joint is None:
         return None
     return (known[joint], 1) if joint in known else led_by(f.tree, known, joint)

@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.differentiation import Gradient, Symbol
     from linegraph.algebra.scalar import Scalar
-    from linegraph.programs.workspace import Functions
+    from linegraph.programs.workspace import Workspace
 
 MOST = 3
 """The most unknowns whose K is inverted in straight lines, by minors: which pivots are zero is not known."""
 
 
-def loop_slopes(f: Functions, chain: Mapping[Symbol, Gradient]) -> dict[Symbol, Gradient]:
+def loop_slopes(f: Workspace, chain: Mapping[Symbol, Gradient]) -> dict[Symbol, Gradient]:
     """The derivatives of each unknown by what it depends on.
 
     Args:
@@ -31,17 +31,17 @@ def loop_slopes(f: Functions, chain: Mapping[Symbol, Gradient]) -> dict[Symbol, 
     Raises:
         ModelError: the loop has more unknowns than `MOST`.
     """
-    assert f.exchange is not None
-    network = f.exchange.network
+    assert f.networks is not None
+    network = f.networks.network
     if len(network.loop) > MOST:
         problem = (
             f"its network has an algebraic loop of {len(network.loop)} unknowns; derivatives are taken "
             f"through loops of {MOST} at most"
         )
-        raise ModelError(f'model "{f.model.name}"', problem)
+        raise ModelError(f'model "{f.tree.system.name}"', problem)
     calculus = Calculus(f.dag, ("loop",), chain)
-    slopes = [calculus.gradient(f.exchange.still(r)) for r in network.loop]
-    inverse = _inverse([[f.exchange.still(e) for e in row] for row in network.loop_jacobian])
+    slopes = [calculus.gradient(f.networks.still(r)) for r in network.loop]
+    inverse = _inverse([[f.networks.still(e) for e in row] for row in network.loop_jacobian])
     found: dict[Symbol, Gradient] = {}
     for i, row in enumerate(inverse):
         total: Gradient = {}

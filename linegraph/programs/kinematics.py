@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from linegraph.algebra.protocol import set_label
-from linegraph.components.parameters import resolver
 from linegraph.dynamics.momentum import (
     center,
     center_columns,
@@ -21,8 +20,8 @@ from linegraph.dynamics.momentum import (
 from linegraph.dynamics.regularity import sample_tree
 from linegraph.errors import ModelError
 from linegraph.ir.program import Program, Result, Routine, needed_for
-from linegraph.kinematics.arms import arms
 from linegraph.kinematics.frame_trees import NamedFrame, Tipped, seat_of, tipped
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.kinematics.twists import (
     Column,
     Outlook,
@@ -40,7 +39,7 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.scalar import Scalar
     from linegraph.kinematics.links import KinematicTree
-    from linegraph.programs.workspace import Functions
+    from linegraph.programs.workspace import Workspace
 
 CENTER = "center_of_mass"
 WHOLE = (
@@ -110,7 +109,7 @@ class Kinematics:
 
     def __init__(
         self,
-        f: Functions,
+        f: Workspace,
         frames: Sequence[NamedFrame],
         *,
         whole: bool = False,
@@ -118,8 +117,7 @@ class Kinematics:
     ) -> None:
         """Build the tree; the rest waits."""
         self._f = f
-        resolve = resolver(f.dag, f.values)
-        seats = [seat_of(f.model, f.tree, resolve, frame.name) for frame in frames]
+        seats = [seat_of(f.tree, frame.name) for frame in frames]
         self._tipped: Tipped = tipped(f.tree, seats, masses=whole, turning=turning)
         self._whole = whole
         self._turning = turning
@@ -127,8 +125,7 @@ class Kinematics:
         self.view = self._seen(self._tipped.tree)
 
     def _seen(self, tree: KinematicTree) -> Outlook:
-        f = self._f
-        return Outlook(tree, f.dag, arms(tree, f.dag, f.q, f.v))
+        return Outlook(TreeState(tree, self._f.q, self._f.v))
 
     def has(self, result: str, frame: str) -> bool:
         """Whether a result can be had, of a frame or of the whole."""
@@ -201,7 +198,7 @@ def besides(asked: Sequence[str], frames: Sequence[NamedFrame]) -> tuple[str, ..
     return (*(["frames"] if frames else []), *(["kinematics"] if frames or several else []))
 
 
-def frames(f: Functions) -> tuple[Program | Routine, ...]:
+def frames(f: Workspace) -> tuple[Program | Routine, ...]:
     """Pose, velocity, Jacobian and its rate of every frame that is asked for."""
     found = []
     for frame in f.frames:
@@ -219,10 +216,10 @@ def frames(f: Functions) -> tuple[Program | Routine, ...]:
     return tuple(found)
 
 
-def whole(function: str) -> Callable[[Functions], tuple[Program | Routine, ...]]:
+def whole(function: str) -> Callable[[Workspace], tuple[Program | Routine, ...]]:
     """What makes one of the functions of `WHOLE`."""
 
-    def make(f: Functions) -> tuple[Program | Routine, ...]:
+    def make(f: Workspace) -> tuple[Program | Routine, ...]:
         require_mass(f)
         result = OF_WHOLE[function]
         entries = shortest([Kinematics(f, (), whole=True)], [(result, "")])
@@ -233,7 +230,7 @@ def whole(function: str) -> Callable[[Functions], tuple[Program | Routine, ...]]
     return make
 
 
-def kinematics(f: Functions) -> tuple[Program | Routine, ...]:
+def kinematics(f: Workspace) -> tuple[Program | Routine, ...]:
     """All that is asked for of kinematics, sharing work; where nothing is, all there is."""
     functions = [key for key in WHOLE if key in f.asked] or ([] if f.frames else list(WHOLE))
     if functions:
@@ -276,22 +273,22 @@ def _require_apart(made: Sequence[Result], keys: Iterable[Key]) -> None:
             raise ModelError(f'frame "{frame or result.name}"', problem)
 
 
-def require_mass(f: Functions) -> None:
+def require_mass(f: Workspace) -> None:
     """Refuse what is about the centre of mass where there is none.
 
     Raises:
         ModelError: all that moves has no mass, for the parameters' own values.
     """
-    links = sample_tree(f.model, f.derivation.formulation).links
+    links = sample_tree(f.tree.system, f.derivation.formulation).links
     if not sum(link.moments.mass for link in links) > 0:
         problem = (
             "all that moves has no mass together, so it has no centre of mass; give a body its mass, or "
             f"do without {', '.join(WHOLE)}"
         )
-        raise ModelError(f'model "{f.model.name}"', problem)
+        raise ModelError(f'model "{f.tree.system.name}"', problem)
 
 
-def both(f: Functions, frames: Sequence[NamedFrame], *, whole: bool = False) -> list[Kinematics]:
+def both(f: Workspace, frames: Sequence[NamedFrame], *, whole: bool = False) -> list[Kinematics]:
     """Kinematics with the frames' axes, and without them."""
     return [Kinematics(f, frames, whole=whole), Kinematics(f, frames, turning=False)]
 
@@ -334,13 +331,13 @@ def _cost(found: dict[Key, tuple[Scalar, ...]]) -> int:
     return len(needed_for(x for entries in found.values() for x in entries))
 
 
-def _result(f: Functions, name: str, kind: str, frame: str, entries: tuple[Scalar, ...]) -> Result:
+def _result(f: Workspace, name: str, kind: str, frame: str, entries: tuple[Scalar, ...]) -> Result:
     shape, about = RESULTS[kind]
     counts = tuple("NV" if size < 0 else "" for size in shape)
     shape = tuple(len(f.v) if size < 0 else size for size in shape)
     return Result(name, shape, entries, about.format(f'"{frame}"'), counts)
 
 
-def _prescribed(f: Functions) -> str:
+def _prescribed(f: Workspace) -> str:
     """What to say where the velocity is not J v alone."""
     return PRESCRIBED if any(link.place.drive for link in f.tree.links) else ""

@@ -29,19 +29,19 @@ from linegraph.programs.loops import assembly, independent, routine
 from linegraph.programs.slopes import columns, matrix, of_motion, turned, variables
 
 if TYPE_CHECKING:
-    from linegraph.programs.workspace import Functions
+    from linegraph.programs.workspace import Workspace
 
 WELL_APART = 1e-4
 """The least singular value of columns of J, in pure numbers, that determine something."""
 
 
-def linearize(f: Functions) -> tuple[Program | Routine, ...]:
+def linearize(f: Workspace) -> tuple[Program | Routine, ...]:
     """A and B in the independent coordinates.
 
     Raises:
         ModelError: the mechanism has none, or constraints follow inputs.
     """
-    who = f'model "{f.model.name}"'
+    who = f'model "{f.tree.system.name}"'
     free = free_changes(f)
     if not free:
         problem = "is not reduced to independent coordinates, in which alone loops are linearised"
@@ -69,7 +69,7 @@ def linearize(f: Functions) -> tuple[Program | Routine, ...]:
     return (_slopes(f), replace(made, details=(*made.details, ("d_at", tuple(free)))))
 
 
-def free_changes(f: Functions) -> list[int]:
+def free_changes(f: Workspace) -> list[int]:
     """The changes of position that the others follow from: those along w, then others as they are needed."""
     if f.tree.network is not None or not independent(f):
         return []
@@ -77,10 +77,10 @@ def free_changes(f: Functions) -> list[int]:
 
     own = [v for _, v in independent(f)]
     others = [k for k in range(f.tree.layout.mechanical) if k not in own]
-    count = sum(equation.holonomic for equation in f.equations)
+    count = sum(equation.holonomic for equation in f.constraint_equations)
     numeric = at_some_time(f.derivation)
     rows = numpy.array(numeric.constraint_jacobian(assembly(f).q), float)
-    J = pure(rows.reshape(len(f.equations), len(f.v)), numeric.sizes)[:count]
+    J = pure(rows.reshape(len(f.constraint_equations), len(f.v)), numeric.sizes)[:count]
     dependent: list[int] = []
     for k in [*reversed(others), *reversed(own)]:
         if len(dependent) == assembly(f).position_rank:
@@ -91,7 +91,7 @@ def free_changes(f: Functions) -> list[int]:
     return []
 
 
-def _slopes(f: Functions) -> Program:
+def _slopes(f: Workspace) -> Program:
     """What is left of the equations at given a and lam, differentiated by changes of q, by v and by u."""
     jacobian, a, lam = f.jacobian, f.symbols("a"), f.symbols("lam")
     less = list(f.driving)
@@ -99,7 +99,7 @@ def _slopes(f: Functions) -> Program:
         less = [x + entry * multiplier for x, entry in zip(less, row, strict=True)]
     motion = [
         sum((entry * x for entry, x in zip(row, a, strict=True)), 0) - gam
-        for row, gam in zip(jacobian, f.chords.bias(), strict=True)
+        for row, gam in zip(jacobian, f.constraint_bias, strict=True)
     ]
     changes, velocities, inputs = variables(f)
     by = [*changes, *velocities, *inputs]
@@ -107,7 +107,7 @@ def _slopes(f: Functions) -> Program:
     results = (
         matrix("slopes_f", of_motion(f, f.carried, less, by), "of M a - f - J^T lam"),
         matrix("slopes_gam", columns(f, motion, by), "of J a - gam"),
-        matrix("slopes_rates", columns(f, f.chords.rates(f.v), changes), "of J v - b"),
+        matrix("slopes_rates", columns(f, f.constraint_rates, changes), "of J v - b"),
         matrix("drift", drift, "of the rates of d by d, -(ad v)"),
     )
     about = (

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 from linegraph.programs.loops import assembly
 
 if TYPE_CHECKING:
-    from linegraph.programs.workspace import Functions
+    from linegraph.programs.workspace import Workspace
 
 
-def remarks(f: Functions) -> tuple[str, ...]:
+def remarks(f: Workspace) -> tuple[str, ...]:
     """What the head of a file says of a closed system."""
     if not f.tree.closed:
         return ()
     found = assembly(f)
-    cut = ", ".join(dict.fromkeys(e.component for e in f.equations))
+    cut = ", ".join(dict.fromkeys(e.component for e in f.constraint_equations))
     text = (
-        f"{len(f.equations)} constraints come from the chords of the tree ({cut}), "
+        f"{len(f.constraint_equations)} constraints come from the chords of the tree ({cut}), "
         "M vdot + h = Q + J^T lam with J vdot = gam; "
         f"{found.rank} are independent: {freedoms_text(found.freedoms)}."
     )
@@ -25,7 +25,9 @@ def remarks(f: Functions) -> tuple[str, ...]:
         text += " With networks beside them they are not reduced to independent coordinates."
     if found.redundant:
         names = [
-            e.multiplier.name for e, one in zip(f.equations, found.unique, strict=True) if not one
+            e.multiplier.name
+            for e, one in zip(f.constraint_equations, found.unique, strict=True)
+            if not one
         ]
         text += (
             f" {found.redundant} are redundant: the motion is the same without them, but these multipliers, "

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from linegraph.components.parameters import resolver
-from linegraph.dynamics.circuit_lengths import Given, sizes
+from linegraph.dynamics.circuit_lengths import sizes
 from linegraph.errors import ModelError
 from linegraph.ir.program import Argument, Listing, Program, Quantity, Result, Routine, reads
 from linegraph.ir.statuses import (
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from linegraph.algebra.scalar import Scalar
     from linegraph.ir.program import Status
     from linegraph.numeric.assembly import Assembly
-    from linegraph.programs.workspace import Functions
+    from linegraph.programs.workspace import Workspace
 
 
-def constraints(f: Functions) -> tuple[Program | Routine, ...]:
+def constraints(f: Workspace) -> tuple[Program | Routine, ...]:
     """φ, J, J v - b, γ, and everything at once."""
     if not f.tree.closed:
         return ()
@@ -48,13 +48,13 @@ def constraints(f: Functions) -> tuple[Program | Routine, ...]:
             "constraint_rates",
             "Rates J v - b of the constraints, zero where v is allowed.",
             ("q", "v"),
-            (_column("rates", f.chords.rates(f.v), "rates of the constraints"),),
+            (_column("rates", f.constraint_rates, "rates of the constraints"),),
         ),
         f.program(
             "constraint_bias",
             "Right-hand side gam of the constraints of acceleration, J vdot = gam.",
             ("q", "v"),
-            (_column("gam", f.chords.bias(), "what J vdot must be"),),
+            (_column("gam", f.constraint_bias, "what J vdot must be"),),
         ),
         _whole(f),
         _sizes(f),
@@ -62,31 +62,36 @@ def constraints(f: Functions) -> tuple[Program | Routine, ...]:
     return tuple(programs)
 
 
-def _sizes(f: Functions) -> Program:
+def _sizes(f: Workspace) -> Program:
     """What makes J a matrix of pure numbers."""
     f.dag.label = "lengths of loops"
     numeric = at_some_time(f.derivation)
-    numbers = Given(numeric.tree, numeric.algebra, numeric.parameters)
-    found = sizes(Given(f.tree, f.dag, f.values), f.equations, numbers)
+    found = sizes(f.tree, numeric.tree)
     about = (
         "Sizes that make J a matrix of pure numbers, J_ij of_v_j / of_phi_i: lengths L of the loops (m) for "
         "forces and translations, 1 for torques and rotations, 0 for relations."
     )
     results = (
-        Result("of_phi", (len(f.equations),), tuple(found.constraints), "of constraints", ("NC",)),
+        Result(
+            "of_phi",
+            (len(f.constraint_equations),),
+            tuple(found.constraints),
+            "of constraints",
+            ("NC",),
+        ),
         Result("of_v", (len(f.v),), tuple(found.velocities), "of velocities", ("NV",)),
     )
     return f.program("constraint_sizes", about, (), results)
 
 
-def _whole(f: Functions) -> Program:
+def _whole(f: Workspace) -> Program:
     force = [effort - h for effort, h in zip(f.driving, f.held, strict=True)]
     about = (
         "All of M vdot = f + J^T lam, J vdot = gam, sharing work: M, f = Q(u) - h, J and gam"
-        f"{', stabilised by Baumgarte' * (f.model.choices.baumgarte is not None)}."
+        f"{', stabilised by Baumgarte' * (f.tree.system.choices.baumgarte is not None)}."
     )
     results = (
-        f.mass_matrix,
+        f.mass_result,
         _column("f", force, "generalised forces Q - h"),
         _jacobian(f),
         _column("gam", _stabilised(f), "what J vdot must be"),
@@ -95,18 +100,21 @@ def _whole(f: Functions) -> Program:
     return f.program("constrained_equations", about, ("q", "v"), results, checks)
 
 
-def forward_dynamics(f: Functions) -> tuple[Routine, ...]:
+def forward_dynamics(f: Workspace) -> tuple[Routine, ...]:
     """v̇ and λ, by elimination of J with complete pivoting: redundant constraints drop out."""
     if not f.symmetric:
         problem = (
             "its controlled sources make the mass matrix unsymmetric, which cannot be solved together "
             "with closed loops yet"
         )
-        raise ModelError(f'model "{f.model.name}"', problem)
+        raise ModelError(f'model "{f.tree.system.name}"', problem)
     results = (
         Result("a", (len(f.v),), (), "accelerations, the derivatives of v"),
         Result(
-            "lam", (len(f.equations),), (), "multipliers; where not unique, those of least norm"
+            "lam",
+            (len(f.constraint_equations),),
+            (),
+            "multipliers; where not unique, those of least norm",
         ),
     )
     about = (
@@ -135,7 +143,7 @@ def forward_dynamics(f: Functions) -> tuple[Routine, ...]:
     )
 
 
-def project(f: Functions) -> tuple[Program | Routine, ...]:
+def project(f: Workspace) -> tuple[Program | Routine, ...]:
     """Q and v onto the constraints."""
     if not f.tree.closed:
         return ()
@@ -168,7 +176,7 @@ def project(f: Functions) -> tuple[Program | Routine, ...]:
     )
 
 
-def reduction(f: Functions) -> tuple[Program | Routine, ...]:
+def reduction(f: Workspace) -> tuple[Program | Routine, ...]:
     """The mechanism in its independent coordinates alone."""
     chosen = independent(f) if f.tree.closed else None
     if not chosen or f.tree.network is not None:
@@ -230,17 +238,17 @@ def reduction(f: Functions) -> tuple[Program | Routine, ...]:
     return complete, tangent, reduced
 
 
-def _phi_calls(f: Functions) -> tuple[str, ...]:
+def _phi_calls(f: Workspace) -> tuple[str, ...]:
     return ("constraints",) if _positions(f) else ()
 
 
-def independent(f: Functions) -> list[tuple[int, int]]:
+def independent(f: Workspace) -> list[tuple[int, int]]:
     """(position, velocity) of each independent coordinate, as chosen or as the assembly found them.
 
     Raises:
         ModelError: a chosen one does not exist, or is none whose rate is its velocity.
     """
-    wanted = f.model.choices.independent
+    wanted = f.tree.system.choices.independent
     pairs = _plain_pairs(f)
     if wanted is None:
         found = assembly(f).independent
@@ -266,7 +274,7 @@ def independent(f: Functions) -> list[tuple[int, int]]:
     return [(pairs[names[name]], names[name]) for name in wanted]
 
 
-def _plain_pairs(f: Functions) -> dict[int, int]:
+def _plain_pairs(f: Workspace) -> dict[int, int]:
     """The position of each velocity that is its derivative."""
     return {
         v.index: q.index
@@ -277,19 +285,19 @@ def _plain_pairs(f: Functions) -> dict[int, int]:
     }
 
 
-def assembly(f: Functions) -> Assembly:
+def assembly(f: Workspace) -> Assembly:
     """What the constraints are worth: found once for all functions."""
     return f.derivation.assembled
 
 
-def listings(f: Functions) -> tuple[Listing, ...]:
+def listings(f: Workspace) -> tuple[Listing, ...]:
     """Constraints with their multipliers, and the independent coordinates."""
     unique = assembly(f).unique
     multipliers = tuple(
         Quantity(
             e.multiplier.name, e.multiplier.unit, e.multiplier.about + "; not unique" * (not one)
         )
-        for e, one in zip(f.equations, unique, strict=True)
+        for e, one in zip(f.constraint_equations, unique, strict=True)
     )
     heading = "constraints, those of position first, and of their multipliers"
     constraints_ = Listing("constraint", "NC", heading, multipliers, ("lam", "gam", "rates"))
@@ -302,13 +310,13 @@ def listings(f: Functions) -> tuple[Listing, ...]:
     )
 
 
-def counts(f: Functions) -> tuple[tuple[str, int], ...]:
+def counts(f: Workspace) -> tuple[tuple[str, int], ...]:
     """How many constraints are of position, and how many are independent."""
     return (("NP", _positions(f)), ("RANK", assembly(f).rank))
 
 
 def routine(
-    f: Functions,
+    f: Workspace,
     name: str,
     about: str,
     arguments: tuple[str, ...],
@@ -319,7 +327,7 @@ def routine(
 ) -> Routine:
     """A routine; it takes the inputs too where what it calls does."""
     # a motion prescribed by input is in M and h
-    moved = (f.mass_matrix, f.bias) if {"mass_matrix", "equations"} & {*calls} else ()
+    moved = (f.mass_result, f.bias_result) if {"mass_matrix", "equations"} & {*calls} else ()
     if (f.driven_constraints or reads("u", moved)) and "u" not in arguments:
         place = sum(argument in ("q", "v", "s", "w") for argument in arguments)
         arguments = (*arguments[:place], "u", *arguments[place:])
@@ -333,7 +341,7 @@ def routine(
     details = (
         ("quaternions", _quaternions(f)),
         ("mechanical", f.tree.layout.mechanical),
-        ("baumgarte", f.model.choices.baumgarte is not None),
+        ("baumgarte", f.tree.system.choices.baumgarte is not None),
         ("position_rank", assembly(f).position_rank),
         ("s_at", tuple(q for q, _ in chosen)),
         ("w_at", tuple(v for _, v in chosen)),
@@ -341,42 +349,42 @@ def routine(
     return Routine(name, about, given, results, algorithm, statuses, calls, details)
 
 
-def _quaternions(f: Functions) -> tuple[int, ...]:
+def _quaternions(f: Workspace) -> tuple[int, ...]:
     """Where quaternions begin in q."""
     return tuple(places[0] for places in f.tree.quaternions)
 
 
-def _positions(f: Functions) -> int:
-    return sum(equation.holonomic for equation in f.equations)
+def _positions(f: Workspace) -> int:
+    return sum(equation.holonomic for equation in f.constraint_equations)
 
 
-def _phi(f: Functions) -> Result:
-    return _column("phi", f.chords.position(), "constraints of position")
+def _phi(f: Workspace) -> Result:
+    return _column("phi", f.constraints, "constraints of position")
 
 
-def _jacobian(f: Functions) -> Result:
+def _jacobian(f: Workspace) -> Result:
     rows = f.jacobian
     entries = tuple(entry for row in rows for entry in row)
     return Result("J", (len(rows), len(f.v)), entries, "Jacobian of the constraints")
 
 
-def _stabilised(f: Functions) -> list[Scalar]:
+def _stabilised(f: Workspace) -> list[Scalar]:
     """γ, less what brings errors of position and velocity back: 2 alpha (J v - b) + beta² φ."""
-    bias = f.chords.bias()
-    if f.model.choices.baumgarte is None:
+    bias = f.constraint_bias
+    if f.tree.system.choices.baumgarte is None:
         return bias
-    resolve = resolver(f.dag, f.values)
-    alpha, beta = (resolve(x) for x in f.model.choices.baumgarte)
-    position = f.chords.position()
+    resolve = resolver(f.dag, f.tree.parameters)
+    alpha, beta = (resolve(x) for x in f.tree.system.choices.baumgarte)
+    position = f.constraints
     phi = [*position, *(0 for _ in range(len(bias) - len(position)))]
     return [
         g - (2 * alpha * rate + beta * beta * x)
-        for g, rate, x in zip(bias, f.chords.rates(f.v), phi, strict=True)
+        for g, rate, x in zip(bias, f.constraint_rates, phi, strict=True)
     ]
 
 
-def _baumgarte_text(f: Functions) -> str:
-    if f.model.choices.baumgarte is None:
+def _baumgarte_text(f: Workspace) -> str:
+    if f.tree.system.choices.baumgarte is None:
         return ""
     return " Errors of position and velocity die out: Baumgarte's terms are part of gam."
 

@@ -11,18 +11,18 @@ from linegraph.programs.workspace import LOOP_FUNCTION
 
 if TYPE_CHECKING:
     from linegraph.kinematics.links import KinematicTree
-    from linegraph.programs.workspace import Functions
+    from linegraph.programs.workspace import Workspace
 
 
-def algebraic_loop(f: Functions) -> tuple[Program | Routine, ...]:
+def algebraic_loop(f: Workspace) -> tuple[Program | Routine, ...]:
     """The residual of the algebraic loop with its Jacobian, and Newton's method on it."""
-    if f.exchange is None or not f.exchange.network.loop:
+    if f.networks is None or not f.networks.network.loop:
         return ()
-    network = f.exchange.network
+    network = f.networks.network
     f.dag.label = "network, algebraic loop"
-    residual = tuple(f.exchange.still(r) for r in network.eased)
-    slopes = tuple(f.exchange.still(e) for row in network.eased_jacobian for e in row)
-    terms = tuple(f.exchange.still(e) for e in network.loop_sizes)
+    residual = tuple(f.networks.still(r) for r in network.eased)
+    slopes = tuple(f.networks.still(e) for row in network.eased_jacobian for e in row)
+    terms = tuple(f.networks.still(e) for e in network.loop_sizes)
     size = len(residual)
     results = (
         Result("r", (size,), residual, "what is zero at the solution"),
@@ -50,17 +50,17 @@ def algebraic_loop(f: Functions) -> tuple[Program | Routine, ...]:
     return equations, solver
 
 
-def checks(f: Functions) -> tuple[Check, ...]:
+def checks(f: Workspace) -> tuple[Check, ...]:
     """That nothing by which the network's static laws are divided is zero."""
-    if f.exchange is None:
+    if f.networks is None:
         return ()
     sizes = dict.fromkeys(
-        f.dag.function("abs", f.exchange.still(pivot)) for pivot in f.exchange.network.pivots
+        f.dag.function("abs", f.networks.still(pivot)) for pivot in f.networks.network.pivots
     )
     return tuple(Check(size, 0, *SINGULAR_NETWORK) for size in sizes if isinstance(size, Node))
 
 
-def remarks(f: Functions) -> tuple[str, ...]:
+def remarks(f: Workspace) -> tuple[str, ...]:
     """What the head of a file says of networks."""
     if f.tree.network is None:
         return ()
@@ -73,7 +73,7 @@ def remarks(f: Functions) -> tuple[str, ...]:
     return (text, *([" ".join(found)] if found else []))
 
 
-def rhs(f: Functions) -> tuple[Program | Routine, ...]:
+def rhs(f: Workspace) -> tuple[Program | Routine, ...]:
     """ẋ of the whole state x = (q, v)."""
     n, m = len(f.q), len(f.v)
     arguments = (*f.head, "u")

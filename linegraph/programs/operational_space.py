@@ -15,15 +15,13 @@ import random
 from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.algebra.factorization import Factors, factored
-from linegraph.algebra.protocol import Floats
-from linegraph.components.parameters import resolver, sample_values
 from linegraph.dynamics.regularity import SINGULAR, sample_tree
 from linegraph.errors import ModelError
 from linegraph.ir.dag import Node
 from linegraph.ir.program import Argument, Call, Check, Program, Result, Routine
 from linegraph.ir.statuses import counted
-from linegraph.kinematics.arms import arms
 from linegraph.kinematics.frame_trees import seat_of, tipped
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.kinematics.twists import Outlook, columns, matrix
 from linegraph.programs import loops as closed_programs
 from linegraph.programs import pivots
@@ -34,7 +32,7 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.scalar import Scalar
     from linegraph.kinematics.frame_trees import NamedFrame
-    from linegraph.programs.workspace import Functions
+    from linegraph.programs.workspace import Workspace
 
 BAR = "inverse of J, weighted by inertia"
 ROWS = {"operational_space": 6, "operational_position": 3}
@@ -43,17 +41,17 @@ ROWS = {"operational_space": 6, "operational_position": 3}
 DIRECTIONS = ("along x", "along y", "along z", "about x", "about y", "about z")
 
 
-def operational_space(f: Functions) -> tuple[Program | Routine, ...]:
+def operational_space(f: Workspace) -> tuple[Program | Routine, ...]:
     """Λ, μ and J̄ of all six rows of the Jacobian of each frame that can move in all directions."""
     return _of_frames(f, "operational_space")
 
 
-def operational_position(f: Functions) -> tuple[Program | Routine, ...]:
+def operational_position(f: Workspace) -> tuple[Program | Routine, ...]:
     """The same of the three linear rows: what an arm of few joints can move."""
     return _of_frames(f, "operational_position")
 
 
-def remarks(f: Functions, chosen: Iterable[str]) -> tuple[str, ...]:
+def remarks(f: Workspace, chosen: Iterable[str]) -> tuple[str, ...]:
     """What the head of a file says of frames that have not all functions that are asked for."""
     chosen = set(chosen)
     return tuple(
@@ -65,7 +63,7 @@ def remarks(f: Functions, chosen: Iterable[str]) -> tuple[str, ...]:
     )
 
 
-def _of_frames(f: Functions, function: str) -> tuple[Program, ...]:
+def _of_frames(f: Workspace, function: str) -> tuple[Program, ...]:
     """One for each frame that can move so; the head of the file tells of the others.
 
     Raises:
@@ -102,7 +100,7 @@ class _Dynamics(NamedTuple):
     spread: tuple[list[list[Scalar]], list[Scalar]] | None = None
 
 
-def _operational(f: Functions, frame: NamedFrame, function: str, dynamics: _Dynamics) -> Program:
+def _operational(f: Workspace, frame: NamedFrame, function: str, dynamics: _Dynamics) -> Program:
     rows = ROWS[function]
     J, rate = _motion(f, frame, rows, dynamics)
     size = len(dynamics.bias)
@@ -157,7 +155,7 @@ def _about(frame: NamedFrame, rows: int, *, closed: bool) -> str:
 
 
 def _motion(
-    f: Functions, frame: NamedFrame, rows: int, dynamics: _Dynamics
+    f: Workspace, frame: NamedFrame, rows: int, dynamics: _Dynamics
 ) -> tuple[list[list[Scalar]], list[Scalar]]:
     """J in the coordinates of `dynamics`, and the rate of the frame's velocity where these are constant."""
     size = len(f.v)
@@ -170,7 +168,7 @@ def _motion(
     return _product(J, T), [x + _dot(row, rest) for x, row in zip(rate[:rows], J, strict=True)]
 
 
-def _open(f: Functions, function: str) -> _Dynamics:
+def _open(f: Workspace, function: str) -> _Dynamics:
     """Of a tree: `equations`.
 
     Raises:
@@ -180,7 +178,7 @@ def _open(f: Functions, function: str) -> _Dynamics:
         raise _refused(f, function, "its controlled sources make the mass matrix unsymmetric")
     size = len(f.v)
     local = (Argument("M", size * size, "mass matrix"), Argument("h", size, "bias"))
-    made = f.program("equations", "", ("q", "v"), (f.mass_matrix, f.bias_beside_mass))
+    made = f.program("equations", "", ("q", "v"), (f.mass_result, f.bias_beside_mass))
     call = Call("equations", tuple(argument.name for argument in made.arguments), local)
     mass: list[list[Scalar]] = [
         [f.dag.symbol("M", i * size + j) if used else 0 for j, used in enumerate(row)]
@@ -190,7 +188,7 @@ def _open(f: Functions, function: str) -> _Dynamics:
     return _Dynamics(range(size), mass, bias, f.tree.outward, (call,))
 
 
-def _closed(f: Functions, function: str) -> _Dynamics:
+def _closed(f: Workspace, function: str) -> _Dynamics:
     """With constraints: `reduction` and `reduced_equations`.
 
     Raises:
@@ -219,12 +217,14 @@ def _closed(f: Functions, function: str) -> _Dynamics:
     return _Dynamics(places, mass, bias, range(k), calls, spread)
 
 
-def _refused(f: Functions, function: str, problem: str) -> ModelError:
-    return ModelError(f'model "{f.model.name}"', f"{problem}: {function} cannot be emitted for it")
+def _refused(f: Workspace, function: str, problem: str) -> ModelError:
+    return ModelError(
+        f'model "{f.tree.system.name}"', f"{problem}: {function} cannot be emitted for it"
+    )
 
 
 def _checks_of_frame(
-    f: Functions, frame: NamedFrame, known: Factors, inner: list[list[Scalar]]
+    f: Workspace, frame: NamedFrame, known: Factors, inner: list[list[Scalar]]
 ) -> list[Check]:
     checks = []
     for i, pivot in enumerate(known.pivots):
@@ -238,25 +238,20 @@ def _checks_of_frame(
     return checks
 
 
-def _immobile(f: Functions, frame: NamedFrame, rows: int) -> str:
+def _immobile(f: Workspace, frame: NamedFrame, rows: int) -> str:
     """What to tell of a frame that nowhere can move in all directions, judged at random states; or nothing.
 
     Named is the first direction that depends on those before it.
     """
-    algebra = Floats(
-        t=f.model.bounds.sometime, u=[0.1 + 0.07 * i for i in range(len(f.tree.inputs))]
-    )
-    tree = sample_tree(f.model, f.derivation.formulation)
-    values = sample_values(f.model.parameters.values(), algebra)
-    seat = seat_of(f.model, tree, resolver(algebra, values), frame.name)
-    way = tipped(tree, [seat], masses=False)
+    tree = sample_tree(f.tree.system, f.derivation.formulation)
+    way = tipped(tree, [seat_of(tree, frame.name)], masses=False)
     failures: list[int] = []
     for seed in (1, 2):
         draw = random.Random(seed)
         q = [draw.uniform(-1, 1) for _ in tree.positions]
         tree.normalise(q)
         rest = [0.0] * len(tree.velocities)
-        view = Outlook(way.tree, algebra, arms(way.tree, algebra, q, rest))
+        view = Outlook(TreeState(way.tree, q, rest))
         row = _dependent(matrix(columns(view, way.tips[0]), len(rest))[:rows])
         if row is None:
             return ""
@@ -291,12 +286,12 @@ def _product(a: Sequence[Sequence[Scalar]], b: Sequence[Sequence[Scalar]]) -> li
     return [[_dot(row, column) for column in columns] for row in a]
 
 
-def _matrix(f: Functions, name: str, rows: int, columns: int) -> list[list[Scalar]]:
+def _matrix(f: Workspace, name: str, rows: int, columns: int) -> list[list[Scalar]]:
     """A local array of a program as rows."""
     return [[f.dag.symbol(name, i * columns + j) for j in range(columns)] for i in range(rows)]
 
 
-def _vector(f: Functions, name: str, size: int) -> list[Scalar]:
+def _vector(f: Workspace, name: str, size: int) -> list[Scalar]:
     return [f.dag.symbol(name, i) for i in range(size)]
 
 

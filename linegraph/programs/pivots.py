@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.scalar import Scalar
     from linegraph.ir.dag import Operand
-    from linegraph.programs.workspace import Functions
+    from linegraph.programs.workspace import Workspace
 
 
 def bound(pivot: Scalar, entry: Scalar) -> Scalar:
@@ -23,7 +23,7 @@ def bound(pivot: Scalar, entry: Scalar) -> Scalar:
 
 
 def checks(
-    f: Functions,
+    f: Workspace,
     pivots: Sequence[Scalar],
     bounds: Sequence[Scalar],
     places: Sequence[int] = (),

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from linegraph.algebra.factorization import Solution, solve
-from linegraph.dynamics import orthogonality
 from linegraph.dynamics.articulated import forward_dynamics
 from linegraph.dynamics.potentials import unknown
 from linegraph.dynamics.regularity import is_solid, sample_tree
@@ -14,7 +13,6 @@ from linegraph.errors import ModelError
 from linegraph.ir.program import Argument, Call, Module, Program, Quantity, Result, Routine
 from linegraph.ir.prologue import COUNT, with_prologue
 from linegraph.ir.sums import with_sums_collected
-from linegraph.kinematics.arms import arms, coordinate_rates
 from linegraph.programs import derivatives as derivative_programs
 from linegraph.programs import division, pivots
 from linegraph.programs import edges as edge_programs
@@ -24,7 +22,7 @@ from linegraph.programs import loop_remarks as closed_remarks
 from linegraph.programs import loops as closed_programs
 from linegraph.programs import networks as network_programs
 from linegraph.programs import operational_space as operational_programs
-from linegraph.programs.workspace import ARGUMENTS, Functions
+from linegraph.programs.workspace import ARGUMENTS, Workspace
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -67,7 +65,7 @@ def module_of(
     parameters = parameters_of(derivation)
     wanted, only, frames = tuple(wanted), tuple(only), tuple(frames)
     asked = _asked(wanted, only, frames)
-    functions = Functions(derivation, folded or not parameters, frames, asked)
+    functions = Workspace(derivation, folded or not parameters, frames, asked)
     made, omitted = _made(functions, [key for key in PROGRAMS if key in asked])
     _require_made(derivation, dict.fromkeys((*only, *wanted)), made)
     chosen = [key for key in PROGRAMS if key in made]
@@ -140,7 +138,7 @@ def _asked(
     return asked
 
 
-def _made(functions: Functions, keys: Iterable[str]) -> tuple[dict[str, Made], tuple[str, ...]]:
+def _made(functions: Workspace, keys: Iterable[str]) -> tuple[dict[str, Made], tuple[str, ...]]:
     """What each of some keys of `PROGRAMS` makes, and those that make what these call; and what is left out.
 
     A key of which nothing is left is none of those made.
@@ -168,34 +166,34 @@ def _made(functions: Functions, keys: Iterable[str]) -> tuple[dict[str, Made], t
                 break
 
 
-def _mass_matrix(f: Functions) -> Program:
-    return f.program("mass_matrix", "Mass matrix M(q).", ("q",), (f.mass_matrix,))
+def _mass_matrix(f: Workspace) -> Program:
+    return f.program("mass_matrix", "Mass matrix M(q).", ("q",), (f.mass_result,))
 
 
-def _bias(f: Functions) -> Program:
+def _bias(f: Workspace) -> Program:
     about = "Bias h(q, v): gravity, Coriolis and centrifugal terms."
-    return f.program("bias", about, ("q", "v"), (f.bias,))
+    return f.program("bias", about, ("q", "v"), (f.bias_result,))
 
 
-def _equations(f: Functions) -> Program:
+def _equations(f: Workspace) -> Program:
     about = "Mass matrix M(q) and bias h(q, v) at once, sharing work."
-    return f.program("equations", about, ("q", "v"), (f.mass_matrix, f.bias_beside_mass))
+    return f.program("equations", about, ("q", "v"), (f.mass_result, f.bias_beside_mass))
 
 
-def _inverse_dynamics(f: Functions) -> Program:
-    tau = f.inverse_dynamics
+def _inverse_dynamics(f: Workspace) -> Program:
+    tau = f.inverse_dynamics(f.symbols("a"))
     result = Result("tau", (len(tau),), tuple(tau), "generalised forces along v")
     about = "Inverse dynamics tau = M(q) a + h(q, v), without forming M."
     return f.program("inverse_dynamics", about, ("q", "v", "a"), (result,))
 
 
-def _forward_dynamics(f: Functions) -> Program:
+def _forward_dynamics(f: Workspace) -> Program:
     """By factored mass matrix or by articulated inertias, whichever takes fewer operations.
 
     With solid bodies M cannot become singular, so articulated inertias need no scale to judge pivots by;
     where some link is not solid for the parameters' own values, the factors do the judging.
     """
-    solid = all(map(is_solid, sample_tree(f.model, f.derivation.formulation).links))
+    solid = all(map(is_solid, sample_tree(f.tree.system, f.derivation.formulation).links))
     if f.armatures is None or f.tree.coupled or f.tree.levelled or not solid:
         return _factored(f)
     articulated = _articulated(f)
@@ -204,13 +202,13 @@ def _forward_dynamics(f: Functions) -> Program:
     return _factored(f)
 
 
-def _articulated(f: Functions) -> Program:
+def _articulated(f: Workspace) -> Program:
     """Links by articulated inertias, networks beside them by their own part of the mass matrix."""
     total = [effort + load for effort, load in zip(f.driving, f.along(f.carried), strict=True)]
-    solution = forward_dynamics(f.short, f.dag, f.crossed, total, f.armatures or {})
+    solution = forward_dynamics(f.working, total, f.armatures or {})
     first, size = f.tree.layout.mechanical, len(f.v) - f.tree.layout.mechanical
     rows: list[list[Scalar]] = [[0] * size for _ in range(size)]
-    for i, j, entry in f.entries:
+    for i, j, entry in f.stored:
         if i >= first:
             rows[i - first][j - first] = rows[i - first][j - first] + entry
     f.dag.label = "network, rates of its states"
@@ -224,7 +222,7 @@ def _articulated(f: Functions) -> Program:
     return _solved(f, whole, bounds, ())
 
 
-def _factored(f: Functions) -> Program:
+def _factored(f: Workspace) -> Program:
     """Call `equations` for M and h, then M = L^T D L in straight lines.
 
     Where h and Q cannot be added without losing digits, only M is called for.
@@ -247,7 +245,7 @@ def _factored(f: Functions) -> Program:
     return _solved(f, solution, bounds, (call,))
 
 
-def _factored_cost(f: Functions) -> int:
+def _factored_cost(f: Workspace) -> int:
     """Operations of `equations` and of what `_factored` adds: p(p+1) + 5p + 3 for p couplings inward."""
     place = {k: n for n, k in enumerate(f.tree.outward)}
     inward = [
@@ -258,7 +256,7 @@ def _factored_cost(f: Functions) -> int:
 
 
 def _solved(
-    f: Functions, solution: Solution, bounds: list[Scalar], calls: tuple[Call, ...]
+    f: Workspace, solution: Solution, bounds: list[Scalar], calls: tuple[Call, ...]
 ) -> Program:
     accelerations = tuple(solution.unknowns)
     result = Result("a", (len(accelerations),), accelerations, ARGUMENTS["a"])
@@ -268,8 +266,8 @@ def _solved(
     return f.program("forward_dynamics", about, given, (result,), checks, calls, status=True)
 
 
-def _coordinate_rates(f: Functions) -> Program:
-    rates = coordinate_rates(f.tree, f.dag, f.q, f.v)
+def _coordinate_rates(f: Workspace) -> Program:
+    rates = f.coordinate_rates
     result = Result("qdot", (len(rates),), tuple(rates), "derivatives of q")
     about = "Coordinate rates qdot = N(q) v."
     return f.program("coordinate_rates", about, ("q", "v"), (result,))
@@ -284,24 +282,20 @@ def energy_remark(model: System, network: Network | None) -> str:
     return f" Not known, and left out: the energy of {'; '.join(found)}." if found else ""
 
 
-def _energy(f: Functions) -> Program:
-    crossed = arms(f.tree, f.dag, f.q, f.v)
-    kinetic, potential = orthogonality.energy(f.tree, f.dag, crossed)
-    stored = potential + f.passive.potential
+def _energy(f: Workspace) -> Program:
+    entries = f.energy
     about = (
         "Kinetic and potential energy (gravity and springs) of all that moves; that of gravity is zero "
         "at the origin of ground."
     )
-    entries: tuple[Scalar, ...] = (kinetic, stored)
-    if f.exchange is not None:
-        entries = (*entries, f.exchange.energy())
+    if f.networks is not None:
         about += " The third is what scalar networks store, heat left out."
-    about += energy_remark(f.model, f.tree.network)
+    about += energy_remark(f.tree.system, f.tree.network)
     result = Result("E", (len(entries),), entries, "kinetic and potential energy (J)")
     return f.program("energy", about, ("q", "v"), (result,))
 
 
-Maker = Callable[[Functions], tuple[Program | Routine, ...]]
+Maker = Callable[[Workspace], tuple[Program | Routine, ...]]
 
 PROGRAMS: dict[str, Maker] = {
     "algebraic_loop": network_programs.algebraic_loop,

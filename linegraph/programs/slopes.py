@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from linegraph.algebra.differentiation import Symbol
     from linegraph.algebra.scalar import Scalar
     from linegraph.dynamics.applied_forces import Applied
-    from linegraph.programs.workspace import Functions
+    from linegraph.programs.workspace import Workspace
 
 Columns = list[list["Scalar"]]
 """A column for each symbol, with an entry for each scalar that is differentiated."""
@@ -26,13 +26,13 @@ SMALL = 8
 """Up to so many velocities both ways are derived and compared."""
 
 
-def variables(f: Functions) -> tuple[list[Symbol], list[Symbol], list[Symbol]]:
+def variables(f: Workspace) -> tuple[list[Symbol], list[Symbol], list[Symbol]]:
     """Changes of q, velocities and inputs."""
     velocities: list[Symbol] = [("v", k) for k in range(f.sizes["v"])]
     return tangent.changes(f.tree), velocities, [("u", k) for k in range(f.sizes["u"])]
 
 
-def columns(f: Functions, given: Sequence[Scalar], by: Sequence[Symbol]) -> Columns:
+def columns(f: Workspace, given: Sequence[Scalar], by: Sequence[Symbol]) -> Columns:
     """The derivatives of some scalars by each of some symbols, by the rules of differentiation.
 
     Raises:
@@ -41,7 +41,7 @@ def columns(f: Functions, given: Sequence[Scalar], by: Sequence[Symbol]) -> Colu
     wanted = {argument for argument, _ in by}
     fixed = {"v", "u", "p"} - wanted if tangent.CHANGE in wanted else {"q", "v", "u", "p"} - wanted
     f.dag.label = "derivatives"
-    chain = tangent.chain(f.tree, f.dag, f.q)
+    chain = tangent.chain(f.tree, f.q)
     if reads("loop", (Result("", (), tuple(given), ""),)):
         chain |= loop_slopes(f, chain)
     calculus = Calculus(f.dag, fixed, chain)
@@ -50,15 +50,16 @@ def columns(f: Functions, given: Sequence[Scalar], by: Sequence[Symbol]) -> Colu
 
 
 def of_motion(
-    f: Functions, acting: Applied, less: Sequence[Scalar], by: Sequence[Symbol]
+    f: Workspace, acting: Applied, less: Sequence[Scalar], by: Sequence[Symbol]
 ) -> Columns:
     """The derivatives of ``M a + h - less``, h with what is `acting`.
 
     By q and v those of mechanics come from composites, unless the rules of differentiation give fewer
     operations, which for a few joints they do; everything else comes by the rules.
     """
-    whole = [x - y for x, y in zip(f.required_by(acting), less, strict=True)]
-    if not has_slopes(f.short, f.crossed):
+    required = f.required_by(acting, f.symbols("a"))
+    whole = [x - y for x, y in zip(required, less, strict=True)]
+    if not has_slopes(f.working):
         return columns(f, whole, by)
     found = _from_composites(f, acting, less, by, whole)
     if len(f.v) > SMALL:
@@ -67,7 +68,7 @@ def of_motion(
 
 
 def _from_composites(
-    f: Functions,
+    f: Workspace,
     acting: Applied,
     less: Sequence[Scalar],
     by: Sequence[Symbol],
@@ -76,13 +77,13 @@ def _from_composites(
     moving = [symbol for symbol in by if symbol[0] in (tangent.CHANGE, "v")]
     if not moving:
         return columns(f, whole, by)
-    mechanics = composite_slopes(f.short, f.dag, f.crossed, f.symbols("a"))
+    mechanics = composite_slopes(f.working, f.symbols("a"))
     parts = {
         tangent.CHANGE: turned(mechanics.by_change),
         "v": turned(mechanics.by_velocity),
     }
     rest = [-x - y for x, y in zip(f.along(acting), less, strict=True)]
-    for i, j, entry in f.entries:
+    for i, j, entry in f.stored:
         rest[i] = rest[i] + entry * f.dag.symbol("a", j)
     others = [symbol for symbol in by if symbol not in moving]
     found = dict(zip(others, columns(f, whole, others), strict=True))

@@ -1,25 +1,17 @@
-"""What the emitted functions of a model share: one DAG, the tree over it, M and h."""
+"""What the emitted functions of a model share: the equations over one DAG."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from linegraph.components.parameters import valued
 from linegraph.dynamics import orthogonality
-from linegraph.dynamics.applied_forces import Applied, applied, efforts
-from linegraph.dynamics.chords import Chords, equations
+from linegraph.dynamics.applied_forces import efforts
+from linegraph.dynamics.chords import equations
 from linegraph.dynamics.composite_bias import bias_beside_mass
-from linegraph.dynamics.edge_variables import InverseScheme
-from linegraph.dynamics.law_names import relations
+from linegraph.dynamics.equations import StateEquations
 from linegraph.dynamics.network_state import ALL, NONE
-from linegraph.dynamics.whole_system import (
-    exchange_at,
-    network_entries,
-    united_inverse_dynamics,
-    united_mass_matrix,
-)
 from linegraph.ir.dag import Dag
 from linegraph.ir.program import (
     Argument,
@@ -31,14 +23,13 @@ from linegraph.ir.program import (
     operations_of,
     reads,
 )
-from linegraph.kinematics.arms import Arm, arms, coordinate_rates
 from linegraph.kinematics.working_frames import shortened
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from linegraph.algebra.scalar import Scalar
-    from linegraph.dynamics.network_state import Exchange
+    from linegraph.dynamics.applied_forces import Applied
     from linegraph.kinematics.frame_trees import NamedFrame
     from linegraph.numeric.derived import Derived
 
@@ -62,8 +53,8 @@ LOOP_FUNCTION = "algebraic_loop"
 """The function that solves the algebraic loop of a network."""
 
 
-class Functions:
-    """What several functions share: the DAG, the tree over it, M and h."""
+class Workspace(StateEquations):
+    """The equations over one DAG, in the shortest working frames, and the functions made of them."""
 
     def __init__(
         self,
@@ -87,30 +78,30 @@ class Functions:
         self.model = derivation.system
         self.head = ["p"] if not folded else []
         self.head += ["t"] if derivation.system.depends_on_time else []
-        self.values = valued(
+        values = valued(
             derivation.system.parameters.values(),
             self.dag,
             lambda p: p.value if folded else self.dag.symbol("p", p.name),
         )
-        self.tree = derivation.tree(self.dag, self.values)
+        tree = derivation.tree(self.dag, values)
         self.dag.label = "moments of links, regrouped"
-        self.shortened = shortened(self.tree)
-        self.dag.label = "equations of constraints"
-        self.short = self.shortened.tree
-        self.equations = equations(self.tree)
+        self.shortened = shortened(tree)
         self.dag.label = ""
         self.sizes = {
-            "q": len(self.tree.positions),
-            "v": len(self.tree.velocities),
-            "a": len(self.tree.velocities),
-            "u": len(self.tree.inputs),
-            "lam": len(self.equations),
-            "loop": len(self.tree.network.loop) if self.tree.network else 0,
+            "q": len(tree.positions),
+            "v": len(tree.velocities),
+            "a": len(tree.velocities),
+            "u": len(tree.inputs),
+            "lam": len(equations(tree)),
+            "loop": len(tree.network.loop) if tree.network else 0,
             "ease": 2,
         }
         self.texts = ARGUMENTS
-        self.q = self.symbols("q")
-        self.v = self.symbols("v")
+        q, v = map(self.symbols, ("q", "v"))
+        super().__init__(tree, q, v, self.shortened, self._solution_in_symbols)
+
+    def _solution_in_symbols(self) -> tuple[list[Scalar], list[Scalar]]:
+        return self.symbols("a"), self.symbols("lam")
 
     def symbols(self, name: str) -> list[Scalar]:
         """The entries of an argument."""
@@ -153,34 +144,11 @@ class Functions:
     @cached_property
     def loop_arguments(self) -> tuple[str, ...]:
         """What the algebraic loop depends on: always the state, inputs where they are in it."""
-        assert self.exchange is not None
-        network = self.exchange.network
+        assert self.networks is not None
+        network = self.networks.network
         rows = (*network.eased, *(e for row in network.eased_jacobian for e in row))
-        results = (Result("r", (), tuple(self.exchange.still(r) for r in rows), ""),)
+        results = (Result("r", (), tuple(self.networks.still(r) for r in rows), ""),)
         return ("q", "v", "u", "loop") if reads("u", results) else ("q", "v", "loop")
-
-    @cached_property
-    def passive(self) -> Applied:
-        """Springs, dampers and loads that no input drives: part of the bias."""
-        return self._applied(driven=False)
-
-    @cached_property
-    def active(self) -> Applied:
-        """Elements and loads that inputs drive: part of Q."""
-        return self._applied(driven=True)
-
-    def _applied(self, *, driven: bool, network: str | None = None) -> Applied:
-        state = (tuple(self.q), tuple(self.v))
-        return applied(
-            self.model,
-            self.tree,
-            self.dag,
-            self.values,
-            self.arms,
-            *state,
-            driven=driven,
-            network=network,
-        )
 
     @cached_property
     def affine(self) -> bool:
@@ -190,80 +158,29 @@ class Functions:
     @cached_property
     def carried(self) -> Applied:
         """What acts at v̇ = 0, all of networks with it where h and Q cannot be added."""
-        return self.passive if self.affine else self._applied(driven=False, network=ALL)
+        return self.passive if self.affine else self.applied(driven=False, network=ALL)
 
     @cached_property
     def driving(self) -> list[Scalar]:
         """What acts beside that: efforts and what inputs drive."""
         if self.affine:
-            return self.efforts
-        forces = self.along(self._applied(driven=True, network=NONE))
-        return efforts(self.tree, self.dag, self.chords, forces)
+            return self.forces
+        forces = self.along(self.applied(driven=True, network=NONE))
+        return efforts(self.chords, forces)
 
     @cached_property
     def held(self) -> list[Scalar]:
         """What v̇ = 0 takes of `carried`: h, where Q can be added to it."""
         if self.affine:
             return list(self.bias_beside_mass.entries)
-        return orthogonality.inverse_dynamics(
-            self.short, self.dag, self.crossed, applied=self.rehoused(self.carried)
-        )
+        return orthogonality.inverse_dynamics(self.working, None, self.rehoused(self.carried))
 
     @cached_property
-    def inverse_dynamics(self) -> list[Scalar]:
-        """``M a + h`` for accelerations as symbols, without M."""
-        return self.required_by(self.passive)
-
-    def required_by(self, acting: Applied) -> list[Scalar]:
-        """``M a + h``, h with what is `acting`, for accelerations as symbols."""
-        a = self.symbols("a")
-        return united_inverse_dynamics(
-            self.short, self.dag, self.crossed, self.entries, a, self.rehoused(acting)
-        )
-
-    @cached_property
-    def arms(self) -> list[Arm]:
-        """The joints' motions at (q, v), in the frames of the walk."""
-        return arms(self.tree, self.dag, self.q, self.v)
-
-    @cached_property
-    def crossed(self) -> list[Arm]:
-        """The same in the shortest frames: for M and h."""
-        return arms(self.short, self.dag, self.q, self.v)
-
-    def along(self, acting: Applied) -> list[Scalar]:
-        """What forces do along v."""
-        return orthogonality.generalised_forces(
-            self.short, self.dag, self.crossed, self.rehoused(acting)
-        )
-
-    def rehoused(self, acting: Applied) -> Applied:
-        """Forces given in the frames of the walk, in the shortest ones."""
-        return replace(acting, wrenches=self.shortened.rehoused(acting.wrenches, self.crossed))
-
-    @cached_property
-    def mass_matrix(self) -> Result:
+    def mass_result(self) -> Result:
         """M as a result."""
-        rows = self.mass_rows
+        rows = self.mass_matrix
         entries = tuple(entry for row in rows for entry in row)
         return Result("M", (len(rows), len(rows)), entries, "mass matrix, both triangles")
-
-    @cached_property
-    def mass_rows(self) -> list[list[Scalar]]:
-        """M."""
-        return united_mass_matrix(self.short, self.dag, self.crossed, self.entries)
-
-    @cached_property
-    def exchange(self) -> Exchange | None:
-        """The networks at (q, v)."""
-        state = (tuple(self.q), tuple(self.v))
-        chords = Chords(self.tree, self.dag, self.arms, self.values)
-        return exchange_at(self.model, self.tree, self.dag, self.values, chords, state)
-
-    @cached_property
-    def entries(self) -> list[tuple[int, int, Scalar]]:
-        """What the networks add to the mass matrix."""
-        return network_entries(self.exchange, self.dag)
 
     @cached_property
     def symmetric(self) -> bool:
@@ -275,7 +192,7 @@ class Functions:
         """What networks add along each velocity of mechanics; None if they tie several to each other."""
         first = self.tree.layout.mechanical
         found: dict[int, Scalar] = {}
-        for i, j, entry in self.entries:
+        for i, j, entry in self.stored:
             if i != j and min(i, j) < first:
                 return None
             if i < first:
@@ -286,66 +203,29 @@ class Functions:
     def pattern(self) -> list[list[bool]]:
         """Where M has entries that are not zero everywhere."""
         size = len(self.v)
-        used = [entry != 0 for entry in self.mass_matrix.entries]
+        used = [entry != 0 for entry in self.mass_result.entries]
         return [used[i * size : (i + 1) * size] for i in range(size)]
-
-    @cached_property
-    def chords(self) -> Chords:
-        """The constraints at (q, v)."""
-        rates = coordinate_rates(self.tree, self.dag, self.q, self.v)
-        state = (tuple(self.q), tuple(self.v))
-        found = relations(self.model, self.tree, self.dag, self.values, state, rates)
-        return Chords(self.tree, self.dag, self.arms, self.values, found)
-
-    @cached_property
-    def jacobian(self) -> list[list[Scalar]]:
-        """J."""
-        return self.chords.jacobian()
 
     @cached_property
     def driven_constraints(self) -> bool:
         """Whether constraints depend on inputs: on motions prescribed by some."""
-        results = (Result("J", (), (*self.chords.position(), *self.chords.rates(self.v)), ""),)
+        results = (Result("J", (), (*self.constraints, *self.constraint_rates), ""),)
         return reads("u", results)
 
     @cached_property
-    def scheme(self) -> InverseScheme:
-        """Every variable of every edge, v̇ and λ as symbols; masses are the model's own."""
-        return InverseScheme(
-            self.derivation,
-            self.tree,
-            self.dag,
-            self.values,
-            self.arms,
-            self.chords,
-            (tuple(self.q), tuple(self.v)),
-            self.symbols("a"),
-            list(zip(self.equations, self.symbols("lam"), strict=True)),
-        )
-
-    @cached_property
-    def efforts(self) -> list[Scalar]:
-        """Q: joint efforts at their velocities, and what driven elements do."""
-        return efforts(self.tree, self.dag, self.chords, self.along(self.active))
-
-    @cached_property
-    def bias(self) -> Result:
+    def bias_result(self) -> Result:
         """The bias h as a result, where it is wanted alone."""
-        return _bias_result(
-            orthogonality.inverse_dynamics(
-                self.short, self.dag, self.crossed, applied=self.rehoused(self.passive)
-            )
-        )
+        return _bias_result(self.bias)
 
     @cached_property
     def bias_beside_mass(self) -> Result:
         """The same where M is wanted with it: from composites or from single links, by count."""
-        if self.short.levelled:
-            return self.bias
+        if self.working.tree.levelled:
+            return self.bias_result
         acting = self.rehoused(self.passive)
-        entries = bias_beside_mass(self.short, self.dag, self.crossed, acting)
-        either = (_bias_result(entries), self.bias)
-        return min(either, key=lambda bias: operations_of((self.mass_matrix, bias)))
+        entries = bias_beside_mass(self.working, acting)
+        either = (_bias_result(entries), self.bias_result)
+        return min(either, key=lambda bias: operations_of((self.mass_result, bias)))
 
 
 def _bias_result(entries: list[Scalar]) -> Result:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from linegraph.dynamics.regularity import cause
 from linegraph.errors import ModelError
 from linegraph.ir.program import Result, leaves, operations_of
-from linegraph.kinematics.arms import coordinate_rates
 from linegraph.notation.plain import Plain
 from linegraph.notation.tree import (
     ONE,
@@ -24,7 +23,7 @@ from linegraph.notation.tree import (
     total,
 )
 from linegraph.notation.writing import pieces
-from linegraph.programs.workspace import Functions
+from linegraph.programs.workspace import Workspace
 from linegraph.report.document import (
     Block,
     Code,
@@ -69,7 +68,7 @@ class Forms:
         """Count operations; nothing is simplified before it is asked for."""
         self._subject = subject
         self._tell = tell
-        self._functions = Functions(subject.derivation, subject.folded)
+        self._functions = Workspace(subject.derivation, subject.folded)
 
     # -- how long they are
 
@@ -77,14 +76,14 @@ class Forms:
     def short(self) -> bool:
         """Whether M and h are written in closed form."""
         f = self._functions
-        entries = (*f.mass_matrix.entries, *f.bias_beside_mass.entries)
+        entries = (*f.mass_result.entries, *f.bias_beside_mass.entries)
         return self._readable(entries, lambda: [self.closed.mass_matrix, self.closed.bias])
 
     @cached_property
     def short_constraints(self) -> bool:
         """Whether φ, J and γ are."""
         f = self._functions
-        entries = [*f.chords.position(), *(x for row in f.jacobian for x in row), *f.chords.bias()]
+        entries = [*f.constraints, *(x for row in f.jacobian for x in row), *f.constraint_bias]
         form = self.closed
         return self._readable(
             entries, lambda: [form.constraints, form.constraint_jacobian, form.constraint_bias]
@@ -94,7 +93,7 @@ class Forms:
     def short_reactions(self) -> bool:
         """Whether reactions are."""
         names = [joint.name for joint in self._subject.model.joints]
-        scheme = self._functions.scheme
+        scheme = self._functions.edges
         entries = [x for n in names for part in scheme.reaction(n) for x in part]
         return self._readable(entries, lambda: [x for n in names for x in self.closed.reaction(n)])
 
@@ -179,7 +178,7 @@ class Forms:
 
     def _forces(self) -> list[Block]:
         """Q of a long system: mostly an effort for each row."""
-        efforts = self._functions.efforts
+        efforts = self._functions.forces
         # counted first: written out, a few hundred shared operations may be millions
         entries = [self._nodes(x, entries=True) for x in efforts if leaves(x) <= MOST_LEAVES]
         if len(entries) < len(efforts) or len(str(entries)) > MOST_WRITTEN:
@@ -241,7 +240,7 @@ class Forms:
             ]
 
         f = self._functions
-        rates = coordinate_rates(f.tree, f.dag, f.q, f.v)
+        rates = f.coordinate_rates
         rows = [
             EquationRow(Name(n.letter, n.subs, n.dots + 1), self._nodes(x))
             for n, x in zip(subject.symbols(subject.q_names), rates, strict=True)

@@ -79,9 +79,9 @@ def centers(subject: Subject) -> list[Block]:
 
 def _rows(subject: Subject) -> list[EquationRow]:
     """The place and the velocity of every mass centre; none where they have too many terms."""
-    from linegraph.programs.workspace import Functions
+    from linegraph.programs.workspace import Workspace
 
-    scheme = Functions(subject.derivation, subject.folded).scheme
+    scheme = Workspace(subject.derivation, subject.folded).edges
     frames = {body: scheme.center(body) for body in subject.model.bodies}
     entries = [x for frame in frames.values() for x in (*frame.origin, *frame.linear)]
     if operations_of((Result("", (len(entries),), tuple(entries), ""),)) > MOST_OPERATIONS:

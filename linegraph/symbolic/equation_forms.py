@@ -11,17 +11,12 @@ from linegraph.algebra.sympy_scalars import Expr, Sympy
 from linegraph.components.parameters import valued
 from linegraph.components.validation import nearest
 from linegraph.dynamics import orthogonality
-from linegraph.dynamics.applied_forces import Applied, applied, efforts
-from linegraph.dynamics.chords import Chords, equations
-from linegraph.dynamics.edge_variables import InverseScheme
-from linegraph.dynamics.law_names import relations
+from linegraph.dynamics.equations import StateEquations
 from linegraph.dynamics.mass_matrix import mass_matrix
-from linegraph.dynamics.outputs import observed
 from linegraph.dynamics.symbol_names import MULTIPLIERS
-from linegraph.dynamics.whole_system import exchange_at, network_entries, united_mass_matrix
 from linegraph.errors import ModelError
 from linegraph.ir.dag import Dag
-from linegraph.kinematics.arms import Arm, arms, coordinate_rates
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.notation.notation import Notation
 from linegraph.paper.joint_form import PaperMatrices, paper_matrices
 from linegraph.paper.star_form import PrintedMatrices, printed_matrices
@@ -34,7 +29,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from linegraph.algebra.scalar import Scalar
-    from linegraph.dynamics.network_state import Exchange
     from linegraph.kinematics.links import KinematicTree
     from linegraph.numeric.derived import Derived
 
@@ -73,8 +67,7 @@ class EquationForms:
         self.names = derivation.symbol_names
         self._sympy = Sympy(self.names)
         self.dag = Dag()
-        self._parameters = self._valued(self.dag)
-        self.tree: KinematicTree = derivation.tree(self.dag, self._parameters)
+        self.tree: KinematicTree = derivation.tree(self.dag, self._valued(self.dag))
         units = [[("q", place) for place in unit] for unit in self.tree.quaternions]
         self.simplifier = Simplifier(
             lambda symbol: self._sympy.symbol(*symbol), level, budget, progress, units
@@ -95,12 +88,12 @@ class EquationForms:
         return tuple(self.dag.symbol(argument, k) for k in range(len(self.names[argument])))
 
     @cached_property
-    def _state(self) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
-        return self._of_dag("q"), self._of_dag("v")
-
-    @cached_property
-    def _arms(self) -> list[Arm]:
-        return arms(self.tree, self.dag, *self._state)
+    def _derived(self) -> StateEquations:
+        """The equations over the DAG, with v̇ and λ as symbols."""
+        q, v = self._of_dag("q"), self._of_dag("v")
+        return StateEquations(
+            self.tree, q, v, solution=lambda: (self._of_dag("a"), self._of_dag(MULTIPLIERS))
+        )
 
     def _matrix(self, what: str, rows: Sequence[Sequence[Scalar]], columns: int = 1) -> Expr:
         """The closed forms of a matrix."""
@@ -115,17 +108,17 @@ class EquationForms:
     @cached_property
     def mass_matrix(self) -> Expr:
         """M(q) as a sympy Matrix."""
-        return self._matrix("mass matrix", self._mass, len(self.v))
+        return self._matrix("mass matrix", self._derived.mass_matrix, len(self.v))
 
     @cached_property
     def bias(self) -> Expr:
         """h(q, v) as a sympy column Matrix."""
-        return self._closed_column("bias", self._held)
+        return self._closed_column("bias", self._derived.bias)
 
     @cached_property
     def forces(self) -> Expr:
         """Q(q, v, u) as a sympy column Matrix: efforts, and all that inputs drive."""
-        return self._closed_column("forces", self._driving)
+        return self._closed_column("forces", self._derived.forces)
 
     def equations(self) -> Equations:
         """The equations of motion, row by row: M v̇ + h = Q + J^T λ, and of constraints J v̇ = γ.
@@ -148,9 +141,10 @@ class EquationForms:
         Entries of networks' states are zero.
         """
         size = self.tree.layout.mechanical
-        mass = [row[:size] for row in mass_matrix(self.tree, self.dag, self._arms)[:size]]
-        bias = orthogonality.inverse_dynamics(self.tree, self.dag, self._arms)[:size]
-        rows = coriolis_matrix(self.dag, mass, bias, self._rates)
+        state = self._derived.state
+        mass = [row[:size] for row in mass_matrix(state)[:size]]
+        bias = orthogonality.inverse_dynamics(state)[:size]
+        rows = coriolis_matrix(self.dag, mass, bias, state.coordinate_rates)
         found = sympy.zeros(len(self.v))
         found[:size, :size] = self._matrix("Coriolis matrix", rows, size)
         return found
@@ -158,14 +152,15 @@ class EquationForms:
     @cached_property
     def gravity(self) -> Expr:
         """g(q) as a column Matrix: what of h weight makes, the gradient of its potential."""
-        _, potential = orthogonality.energy(self.tree, self.dag, self._arms)
-        rows = gradient_along(self.dag, potential, self._rates, len(self.v))
+        state = self._derived.state
+        _, potential = orthogonality.energy(state)
+        rows = gradient_along(self.dag, potential, state.coordinate_rates, len(self.v))
         return self._closed_column("gravity", rows)
 
     @cached_property
     def coordinate_rates(self) -> Expr:
         """q̇ = N(q) v as a column Matrix."""
-        return self._closed_column("coordinate rates", self._rates)
+        return self._closed_column("coordinate rates", self._derived.coordinate_rates)
 
     @cached_property
     def rates(self) -> Expr:
@@ -187,11 +182,7 @@ class EquationForms:
     @cached_property
     def energy(self) -> tuple[Expr, ...]:
         """Kinetic and potential energy, that of springs included; then what networks store, if any."""
-        kinetic, potential = orthogonality.energy(self.tree, self.dag, self._arms)
-        found = [kinetic, potential + self._applied.potential]
-        if self._exchange is not None:
-            found.append(self._exchange.energy())
-        return tuple(self.simplifier.all(found, "energy"))
+        return tuple(self.simplifier.all(self._derived.energy, "energy"))
 
     @property
     def kinetic_energy(self) -> Expr:
@@ -227,17 +218,17 @@ class EquationForms:
     @cached_property
     def constraints(self) -> Expr:
         """φ(q) as a column Matrix: zero where all loops are closed."""
-        return self._closed_column("constraints", self._chords.position())
+        return self._closed_column("constraints", self._derived.constraints)
 
     @cached_property
     def constraint_jacobian(self) -> Expr:
         """J(q), constraints x velocities; the multipliers' names are in `multipliers`."""
-        return self._matrix("constraint Jacobian", self._chords.jacobian(), len(self.v))
+        return self._matrix("constraint Jacobian", self._derived.jacobian, len(self.v))
 
     @cached_property
     def constraint_bias(self) -> Expr:
         """γ of J v̇ = γ as a column Matrix."""
-        return self._closed_column("constraint bias", self._chords.bias())
+        return self._closed_column("constraint bias", self._derived.constraint_bias)
 
     def reaction(self, joint: str) -> tuple[Expr, Expr]:
         """Force and torque that a joint exerts on its head, one edge alone, v̇ as symbols ``a_name``.
@@ -249,7 +240,7 @@ class EquationForms:
         """
         if joint not in self.tree.ends:
             raise ModelError(f'joint "{joint}"', f"is not there; {nearest(joint, self.tree.ends)}")
-        return self._both(f"reaction of {joint}", *self._scheme.reaction(joint))
+        return self._both(f"reaction of {joint}", *self._derived.edges.reaction(joint))
 
     def across(self, edge: str) -> tuple[Expr, Expr]:
         """Velocity and angular velocity across an edge, in ground axes.
@@ -257,7 +248,7 @@ class EquationForms:
         Raises:
             ModelError: there is no such edge.
         """
-        found = self._scheme.across()
+        found = self._derived.edges.across()
         if edge not in found:
             raise ModelError(f'edge "{edge}"', f"is not there; {nearest(edge, found)}")
         return self._both(f"motion across {edge}", *found[edge])
@@ -271,100 +262,24 @@ class EquationForms:
     # -- what they are made of
 
     @cached_property
-    def _mass(self) -> list[list[Scalar]]:
-        entries = network_entries(self._exchange, self.dag)
-        return united_mass_matrix(self.tree, self.dag, self._arms, entries)
-
-    @cached_property
-    def _rates(self) -> list[Scalar]:
-        return coordinate_rates(self.tree, self.dag, *self._state)
-
-    @cached_property
-    def _exchange(self) -> Exchange | None:
-        """The networks."""
-        chords = Chords(self.tree, self.dag, self._arms, self._parameters)
-        return exchange_at(self._model, self.tree, self.dag, self._parameters, chords, self._state)
-
-    @cached_property
-    def _chords(self) -> Chords:
-        found = relations(
-            self._model, self.tree, self.dag, self._parameters, self._state, self._rates
-        )
-        return Chords(self.tree, self.dag, self._arms, self._parameters, found)
-
-    @cached_property
-    def _scheme(self) -> InverseScheme:
-        multipliers = self._of_dag(MULTIPLIERS)
-        return InverseScheme(
-            self.derivation,
-            self.tree,
-            self.dag,
-            self._parameters,
-            self._arms,
-            self._chords,
-            self._state,
-            self._of_dag("a"),
-            list(zip(equations(self.tree), multipliers, strict=True)),
-        )
-
-    @cached_property
-    def _held(self) -> list[Scalar]:
-        """The bias h."""
-        return orthogonality.inverse_dynamics(self.tree, self.dag, self._arms, None, self._applied)
-
-    @cached_property
-    def _driving(self) -> list[Scalar]:
-        """The forces Q."""
-        acting = self._acted(driven=True)
-        active = orthogonality.generalised_forces(self.tree, self.dag, self._arms, acting)
-        return efforts(self.tree, self.dag, self._chords, active)
-
-    @cached_property
     def _observed(self) -> dict[str, Scalar]:
         """The outputs that the model names."""
-        found, _ = observed(
-            self._model,
-            self.tree,
-            self.dag,
-            self._parameters,
-            self._chords,
-            self._state,
-            self._scheme,
-        )
+        found, _ = self._derived.outputs
         return dict(zip((output.name for output in self._model.outputs), found, strict=True))
 
     @cached_property
     def motion(self) -> EquationsOfMotion:
         """The equations over the DAG, as they are linearised."""
-        (q, v), exchange = self._state, self._exchange
+        of = self._derived
+        state, exchange = of.state, of.networks
         return EquationsOfMotion.of(
-            self.tree,
+            of,
             self.dag,
-            self._chords,
-            v,
-            mass=self._mass,
-            right=[effort - h for effort, h in zip(self._driving, self._held, strict=True)],
-            rates=self._rates,
+            right=[effort - h for effort, h in zip(of.forces, of.bias, strict=True)],
             loop=[] if exchange is None else exchange.algebraic_loop(),
             outputs=self._observed
-            or dict(zip(map(str, [*self.q, *self.v]), [*q, *v], strict=True)),
+            or dict(zip(map(str, [*self.q, *self.v]), [*state.q, *state.v], strict=True)),
             inputs=len(self.u),
-        )
-
-    @cached_property
-    def _applied(self) -> Applied:
-        """Elements and loads that no input drives."""
-        return self._acted(driven=False)
-
-    def _acted(self, *, driven: bool) -> Applied:
-        return applied(
-            self._model,
-            self.tree,
-            self.dag,
-            self._parameters,
-            self._arms,
-            *self._state,
-            driven=driven,
         )
 
     # -- the paper's matrices
@@ -376,12 +291,12 @@ class EquationForms:
     @cached_property
     def paper_matrices(self) -> PaperMatrices:
         """P, H, C, S, K and the literal (13)-(15) of the paper, over sympy and not simplified."""
-        return paper_matrices(self._sympy_tree, self._sympy, list(self.q), list(self.v))
+        return paper_matrices(TreeState(self._sympy_tree, self.q, self.v))
 
     @cached_property
     def printed_matrices(self) -> PrintedMatrices:
         """All matrices of the paper in its own form of 2n - 1 chords, over sympy and not simplified."""
-        return printed_matrices(self._sympy_tree, self._sympy, list(self.q), list(self.v))
+        return printed_matrices(TreeState(self._sympy_tree, self.q, self.v))
 
     def __repr__(self) -> str:
         """What it is of, and how far it is simplified."""

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from linegraph.algebra.differentiation import Gradient, Symbol
     from linegraph.algebra.scalar import Scalar
-    from linegraph.dynamics.chords import Chords
+    from linegraph.dynamics.equations import StateEquations
     from linegraph.ir.dag import Dag
     from linegraph.kinematics.links import KinematicTree
 
@@ -83,15 +83,20 @@ class EquationsOfMotion:
     inputs: int
 
     @classmethod
-    def of(
-        cls, tree: KinematicTree, dag: Dag, chords: Chords, v: Sequence[Scalar], **others: Any
-    ) -> EquationsOfMotion:
-        """A motion with the constraints of chords, if there are any."""
+    def of(cls, found: StateEquations, dag: Dag, **others: Any) -> EquationsOfMotion:
+        """A motion with its constraints, if there are any."""
         given: tuple[Any, ...] = ([], [], [], [])
-        if tree.closed:
-            given = (chords.jacobian(), chords.bias(), chords.rates(v), chords.position())
+        mass, rates = found.mass_matrix, found.coordinate_rates
+        if found.tree.closed:
+            given = (
+                found.jacobian,
+                found.constraint_bias,
+                found.constraint_rates,
+                found.constraints,
+            )
         names = ("jacobian", "bias", "drift", "position")
-        return cls(tree, dag, **dict(zip(names, given, strict=True)), **others)
+        known = dict(zip(names, given, strict=True))
+        return cls(found.tree, dag, mass=mass, rates=rates, **known, **others)
 
     @property
     def size(self) -> int:
@@ -159,7 +164,7 @@ def slopes(motion: EquationsOfMotion, *, moving: bool) -> Slopes:
     changes: list[Symbol] = [("q", k) for k in range(len(motion.rates))]
     if closed:
         q = [dag.symbol("q", k) for k in range(len(motion.rates))]
-        chain, changes = tangent.chain(tree, dag, q), tangent.changes(tree)
+        chain, changes = tangent.chain(tree, q), tangent.changes(tree)
     fixed = ("p", "t", "a", MULTIPLIERS)
     calculus = Calculus(dag, fixed, chain)
     velocities: list[Symbol] = [("v", k) for k in range(motion.size)]

@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from linegraph.algebra.jets import Jet, Jets
 from linegraph.algebra.protocol import Floats
 from linegraph.dynamics import orthogonality
-from linegraph.dynamics.applied_forces import applied, efforts
 from linegraph.dynamics.edge_quantities import network_powers, powers
 from linegraph.dynamics.edge_variables import InverseScheme
-from linegraph.dynamics.whole_system import network_entries
 from linegraph.ir.interpreter import run
 from linegraph.ir.program import Program
 from linegraph.ir.prologue import PREPARE
-from linegraph.kinematics.arms import Arm, arms, coordinate_rates
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.paper.joint_form import paper_matrices
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from linegraph.algebra.scalar import Scalar
-    from linegraph.dynamics.chords import ChordEquation
+    from linegraph.dynamics.equations import StateEquations
     from linegraph.evaluation import Function
     from linegraph.ir.program import Module
     from linegraph.kinematics.links import KinematicTree
@@ -56,17 +55,18 @@ class _State:
         given = (algebra, values, numeric.tree, numeric)
         return cls(point, point.derivation, *given, q, v)
 
+    @cached_property
+    def equations(self) -> StateEquations:
+        """The derivation over floats."""
+        return self.numeric.at(self.q, self.v)
+
     def reference(self) -> tuple[list[Vector], Vector]:
         """M and h by the derivation over floats."""
-        crossed = arms(self.tree, self.algebra, self.q, self.v)
-        M = self.numeric.united_mass_matrix(self.q, self.v)
-        passive = self._applied(crossed, driven=False)
-        return M, orthogonality.inverse_dynamics(self.tree, self.algebra, crossed, applied=passive)
+        return self.equations.mass_matrix, self.equations.bias
 
     def constraints(self) -> tuple[Vector, Vector]:
         """J and γ by the derivation over floats."""
-        J = [x for row in self.numeric.constraint_jacobian(self.q) for x in row]
-        return J, self.numeric.constraint_bias(self.q, self.v)
+        return [x for row in self.equations.jacobian for x in row], self.equations.constraint_bias
 
     def emitted(self, module: Module) -> tuple[list[Vector], Vector]:
         """M and h by the program that would be emitted."""
@@ -97,7 +97,7 @@ class _State:
 
     def run(self, module: Module, name: str) -> list[Vector]:
         """The results of one of the programs that would be emitted."""
-        exchange = self.numeric.exchange(self.q, self.v)
+        exchange = self.equations.networks
         loop = exchange.solved if exchange is not None and exchange.network.loop else []
         given = {"q": self.q, "v": self.v, "a": self.point.a, "loop": loop}
         return self._run(module, name, {**given, **self.algebra.arguments})
@@ -117,44 +117,24 @@ class _State:
 
     def forces(self) -> Vector:
         """Q: joint efforts and what inputs drive."""
-        crossed = arms(self.tree, self.algebra, self.q, self.v)
-        acting = self._applied(crossed, driven=True)
-        active = orthogonality.generalised_forces(self.tree, self.algebra, crossed, acting)
-        chords = self.numeric.chords(self.q, self.v)
-        return [float(x) for x in efforts(self.tree, self.algebra, chords, active)]
+        return [float(x) for x in self.equations.forces]
 
-    def audit_sums(
-        self, acceleration: Vector, multipliers: Vector, rows: list[ChordEquation]
-    ) -> Any:
+    def audit_sums(self, acceleration: Vector, multipliers: Vector) -> Any:
         """What the powers of all edges sum up to in each subspace."""
         import numpy
 
-        crossed = arms(self.tree, self.algebra, self.q, self.v)
-        scheme = InverseScheme(
-            self.derivation,
-            self.tree,
-            self.algebra,
-            self.parameters,
-            crossed,
-            self.numeric.chords(self.q, self.v),
-            (tuple(self.q), tuple(self.v)),
-            acceleration,
-            list(zip(rows, multipliers, strict=True)),
-        )
+        scheme = InverseScheme(self.equations.chords, acceleration, multipliers)
         _, sums = powers(scheme.edges())
         _, domains = network_powers(self.tree.network, scheme.network())
         return numpy.array([float(x) for x in (*sums, *domains.values())])
 
     def printed(self) -> tuple[list[Vector], Vector]:
         """M and h by the paper's matrices; what elements add is projected by the float reference."""
-        crossed = arms(self.tree, self.algebra, self.q, self.v)
-        matrices = paper_matrices(self.tree, self.algebra, self.q, self.v)
-        loads = orthogonality.generalised_forces(
-            self.tree, self.algebra, crossed, self._applied(crossed, driven=False)
-        )
+        of = self.equations
+        matrices = paper_matrices(of.state)
+        loads = of.along(of.passive)
         rows = [list(row) for row in matrices.A]
-        entries = network_entries(self.numeric.exchange(self.q, self.v), self.algebra)
-        for i, j, entry in entries:
+        for i, j, entry in of.stored:
             rows[i][j] += entry
         return rows, [-b - load for b, load in zip(matrices.B, loads, strict=True)]
 
@@ -162,15 +142,11 @@ class _State:
         """The rate of kinetic and gravitational energy, the power of all that is applied, and their size."""
         import numpy as np
 
-        crossed = arms(self.tree, self.algebra, self.q, self.v)
-        passive = orthogonality.generalised_forces(
-            self.tree, self.algebra, crossed, self._applied(crossed, driven=False)
-        )
+        passive = self.equations.along(self.equations.passive)
         first = self.tree.layout.mechanical
         both = list(zip(self.v, self.forces(), passive, strict=True))[:first]
         power = sum(v * (active + own) for v, active, own in both)
-        entries = network_entries(self.numeric.exchange(self.q, self.v), self.algebra)
-        for i, j, entry in entries:
+        for i, j, entry in self.equations.stored:
             # what a rotor behind a gear takes is no power applied to the bodies
             power -= self.v[i] * entry * acceleration[j] if i < first else 0.0
         of_M, of_force = self.point.bodies.mass_matrix[1], self.point.force[1]
@@ -181,16 +157,9 @@ class _State:
 
     def _energy_rate(self, acceleration: Sequence[float]) -> float:
         """The rate of kinetic and gravitational energy, by calculating with jets."""
-        rates = coordinate_rates(self.tree, self.algebra, self.q, self.v)
+        rates = self.equations.coordinate_rates
         q = [Jet(x, dx, 0) for x, dx in zip(self.q, rates, strict=True)]
         v = [Jet(x, dx, 0) for x, dx in zip(self.v, acceleration, strict=True)]
-        jets = Jets(self.algebra)
-        energies = orthogonality.energy(self.tree, jets, arms(self.tree, jets, q, v))
+        moving = replace(self.tree, algebra=Jets(self.algebra))
+        energies = orthogonality.energy(TreeState(moving, q, v))
         return float(sum(energy.dx for energy in energies if isinstance(energy, Jet)))
-
-    def _applied(self, crossed: list[Arm], *, driven: bool) -> Any:
-        state = (tuple(self.q), tuple(self.v))
-        model = self.derivation.system
-        return applied(
-            model, self.tree, self.algebra, self.parameters, crossed, *state, driven=driven
-        )

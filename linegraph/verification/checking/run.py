@@ -60,7 +60,7 @@ def _check(derivation: Derived, seed: int) -> Findings:
     points, moving = _points(derivation, seed)
     tally = Tally(_names(derivation))
     unjudged = _unjudged(derivation, moving=moving)
-    driven, rows = _driven(derivation), equations(tree)
+    driven = _driven(derivation)
     function = loaded(derivation, module, "forward_dynamics") if tree.closed and moving else None
     for place, point in enumerate(points):
         state = _State.at(point)
@@ -73,7 +73,7 @@ def _check(derivation: Derived, seed: int) -> Findings:
         if not driven and tree.layout.mechanical:
             change, power, size = state.power_balance(a.tolist())
             tally.note(POWER, "rate of energy", change, power, size)
-        sums = state.audit_sums(a.tolist(), lam.tolist(), rows)
+        sums = state.audit_sums(a.tolist(), lam.tolist())
         tally.note(AUDIT, "sums of through times across", sums, 0 * sums, point.edges.sums[1])
         for still in (point, replace(point, u=[0.0] * len(point.u)))[: 1 + bool(point.u)]:
             # what a source drives hides what a store alone makes

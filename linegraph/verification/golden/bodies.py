@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.dynamics.applied_forces import efforts
 from linegraph.dynamics.network_state import DRIVEN, RESTING
-from linegraph.dynamics.whole_system import network_entries
 from linegraph.spatial.vector import ZERO, add, is_zero, times
 
 if TYPE_CHECKING:
@@ -51,16 +50,13 @@ class Bodies:
     def heavy(self) -> list[Heavy]:
         """Every body that moves."""
         moving = {body for body, (link, _) in self.walk.tree.bodies.items() if link >= 0}
-        model = self.walk.numeric.model
-        assert model is not None
+        model = self.walk.tree.system
         return [self.heavy_of(body) for body in model.bodies if body in moving]
 
     def heavy_of(self, name: str) -> Heavy:
         """A body about its mass centre or, where none is given, its origin."""
         np, number, resolve = self.walk.np, self.walk.number, self.walk.numeric.resolve
-        model = self.walk.numeric.model
-        assert model is not None
-        body = model.bodies[name]
+        body = self.walk.tree.system.bodies[name]
         link, pose = self.walk.tree.bodies[name]
         about: Any = body.center or ZERO
         about = tuple(number(resolve(x)) for x in about)
@@ -88,9 +84,7 @@ class Bodies:
             # a slender body has none about its axis, but for the rounding of the rest
             diagonal += np.linalg.norm(body.inertia) * np.square(np.abs(angular)).sum(axis=0)
             diagonal += abs(body.mass) * np.square(np.abs(linear)).sum(axis=0)
-        for i, j, entry in network_entries(
-            self.walk.numeric.exchange(self.walk.q, self.walk.v), self.walk.numeric.algebra
-        ):
+        for i, j, entry in self.walk.numeric.at(self.walk.q, self.walk.v).stored:
             total[i, j] += self.walk.number(entry)
         # a mass on an axis has none about it, but for the rounding of directions
         diagonal = np.maximum(diagonal, NOISE**2 * self._aside)
@@ -218,7 +212,7 @@ class Bodies:
         driven, size = self._along(numeric.applied(self.walk.q, self.walk.v, driven=True))
         chords = numeric.chords(self.walk.q, self.walk.v)
         nothing = [0.0] * len(self.walk.v)
-        pushed = efforts(self.walk.tree, numeric.algebra, chords, nothing)
+        pushed = efforts(chords, nothing)
         pushed = np.array([self.walk.number(x) for x in pushed])
         size = size + np.abs(pushed)
         size[self.walk.tree.layout.mechanical :] += self._of_laws(DRIVEN)
@@ -239,7 +233,7 @@ class Bodies:
             potential -= float(height)
             size += abs(float(height))
         acting = self.walk.numeric.applied(self.walk.q, self.walk.v, driven=False)
-        springs = float(acting.potential) if acting else 0.0
+        springs = float(acting.potential)
         exchange = self.walk.numeric.exchange(self.walk.q, self.walk.v)
         stored = [] if exchange is None else [float(exchange.energy())]
         found = np.array([kinetic, potential + springs, *stored])

@@ -89,7 +89,7 @@ class Constraints:
         if any(relation.name == name for relation in self.walk.tree.relations):
             # the model gives it as it is
             known = self._relations
-            return known.jacobian()[k], known.rates(self.walk.v)[k], known.bias()[k]
+            return known.jacobian()[k], known.rates()[k], known.bias()[k]
         row = self._rows[name][equation.place]
         if equation.holonomic:
             _, dx, ddx = self.walk.parts([row.position])

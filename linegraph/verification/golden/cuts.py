@@ -21,10 +21,9 @@ from linegraph.components.constraints.base import Constraint, Instant, Pose, Pre
 from linegraph.components.forces import Element, Load
 from linegraph.components.parameters import resolver
 from linegraph.components.scalar.forces import NetworkForce
-from linegraph.dynamics.applied_forces import Acting
 from linegraph.dynamics.chords import equations
+from linegraph.dynamics.force_laws import ForceLaws
 from linegraph.dynamics.law_names import scope
-from linegraph.dynamics.network_state import ALL
 from linegraph.dynamics.reaction_rows import rows_of
 from linegraph.errors import ModelError
 from linegraph.model.terminal_graphs import terminals_of
@@ -137,13 +136,10 @@ class Cuts:
         return self.derivation.system
 
     @cached_property
-    def acting(self) -> Acting:
+    def acting(self) -> ForceLaws:
         """The laws of elements, loads and networks, in numbers."""
-        numeric = self.walk.numeric
-        state = (tuple(self.walk.q), tuple(self.walk.v))
-        chords = numeric.chords(*state)
-        given = (self.walk.tree, numeric.algebra, numeric.parameters, chords, state, ALL)
-        return Acting(self.model, *given, acceleration=[float(x) for x in self.a[0]])
+        chords = self.walk.numeric.chords(self.walk.q, self.walk.v)
+        return ForceLaws(chords, [float(x) for x in self.a[0]])
 
     # -- places
 
@@ -225,9 +221,8 @@ class Cuts:
         if isinstance(element, NetworkForce):
             return 0.0
         numeric = self.walk.numeric
-        state = (tuple(self.walk.q), tuple(self.walk.v))
-        given = (self.model, self.walk.tree, numeric.algebra, numeric.parameters, state)
-        names: Any = scope(*given, numeric.chords(*state))
+        chords = numeric.chords(self.walk.q, self.walk.v)
+        names: Any = scope(chords.state, chords)
         if self.acting.exchange is not None:
             names = ChainMap(names, self.acting.exchange.variables())
 

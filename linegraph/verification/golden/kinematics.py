@@ -39,7 +39,7 @@ class KinematicReference:
 
     def frame(self, name: str) -> Moved:
         """How it moves: a body, a frame of one, or its mass centre."""
-        model, resolve = self.walk.numeric.model, self.walk.numeric.resolve
+        model, resolve = self.walk.tree.system, self.walk.numeric.resolve
         assert model is not None
         terminals = terminals_of(model)
         if name in terminals:
@@ -56,7 +56,7 @@ class KinematicReference:
 
     def _center(self, name: str) -> Any:
         """Where a body's mass centre is, in the body's own frame."""
-        model, resolve = self.walk.numeric.model, self.walk.numeric.resolve
+        model, resolve = self.walk.tree.system, self.walk.numeric.resolve
         assert model is not None
         body = model.bodies[name]
         if body.first is None:

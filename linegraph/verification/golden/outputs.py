@@ -74,10 +74,8 @@ class Outputs:
             return self._variable(*variable)
         cuts = self.edges.cuts
         walk, numeric = cuts.walk, cuts.walk.numeric
-        state = (tuple(walk.q), tuple(walk.v))
-        chords = numeric.chords(*state)
-        given = (cuts.model, walk.tree, numeric.algebra, numeric.parameters)
-        values = scope(*given, state, chords)
+        chords = numeric.chords(walk.q, walk.v)
+        values = scope(chords.state, chords)
         if name not in values:
             inputs = [quantity.name for quantity in walk.tree.inputs]
             return float(numeric.algebra.arguments["u"][inputs.index(name)]), 0.0

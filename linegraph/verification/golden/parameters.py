@@ -24,6 +24,7 @@ from linegraph.components.parameters import names_in
 from linegraph.components.scalar.forces import forces_of
 from linegraph.dynamics.applied_forces import depends_on_inputs
 from linegraph.identification.standard_parameters import MOMENTS, axes, homes, led_by
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.spatial.vector import ZERO
 from linegraph.verification.golden.bodies import NOISE, Heavy
 
@@ -58,8 +59,7 @@ class Parameters:
 
     @cached_property
     def _axes(self) -> list[Axis]:
-        assert self.walk.numeric.model is not None
-        return axes(self.walk.numeric.model, self.walk.tree)
+        return axes(self.walk.tree)
 
     @cached_property
     def regressor(self) -> Valued:
@@ -123,7 +123,7 @@ class Parameters:
     def _moments(self) -> list[tuple[list[float], list[float]]]:
         """Of each link its ten moments about its home, and how large what they are sums of is."""
         np, resolve, tree = self.walk.np, self.walk.numeric.resolve, self.walk.tree
-        model = self.walk.numeric.model
+        model = self.walk.tree.system
         assert model is not None
         found = homes(tree)
         mass, first, inertia = (np.zeros((len(found), *x)) for x in ((), (3,), (3, 3)))
@@ -158,7 +158,7 @@ class Parameters:
 
     def _worn(self) -> tuple[dict[str, float], dict[str, float]]:
         """Viscous and dry friction by joint, as far as they are constants that Y has columns for."""
-        model, resolve = self.walk.numeric.model, self.walk.numeric.resolve
+        model, resolve = self.walk.tree.system, self.walk.numeric.resolve
         assert model is not None
         known = {axis.joint: axis for axis in self._axes}
         damping, friction = dict.fromkeys(known, 0.0), dict.fromkeys(known, 0.0)
@@ -186,7 +186,7 @@ class Parameters:
 
         With one edge in mechanics moving at w, and all else at rest, E = J w² / 2 and nothing in w alone.
         """
-        walk, model = self.walk, self.walk.numeric.model
+        walk, model = self.walk, self.walk.tree.system
         known = {axis.joint: axis for axis in self._axes}
         found = dict.fromkeys(known, 0.0)
         at = walk.numeric.exchange(walk.q, [0.0] * len(walk.v))
@@ -241,4 +241,5 @@ def _moving(at: Exchange, port: str, w: float) -> Exchange:
     def motion(name: str) -> EdgeMotion:
         return replace(at.motion(name), w=w if name == port else 0.0)
 
-    return replace(at, motion=motion, v=[0.0] * len(at.v), _motions={})
+    still = TreeState(at.state.tree, at.state.q, [0.0] * len(at.state.v))
+    return replace(at, state=still, motion=motion, _motions={})

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, Any
 from linegraph.components.parameters import valued
 from linegraph.errors import ModelError
 from linegraph.ir.functions import of_numbers
+from linegraph.numeric.reference import Numeric
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from linegraph.algebra.scalar import Scalar
-    from linegraph.numeric.reference import Numeric
 
 STEP = 2.0**-100
 """h; a power of two, by which products and quotients are exact."""
@@ -160,11 +160,12 @@ def stepped(
         model = derivation.system
         values = valued(model.parameters.values(), algebra, lambda p: known[p.name])
         tree = derivation.tree(algebra, values)
-    found = replace(numeric, tree=tree, algebra=algebra, parameters=values)
+    tree = replace(tree, algebra=algebra, parameters=values)
+    found = Numeric(tree, derivation)
     if tree.network is None or not tree.network.loop:
         return found
     algebra = Complexes(**algebra.arguments, loop=_loop(numeric, found, q, v, held=held))
-    return replace(found, algebra=algebra)
+    return Numeric(replace(tree, algebra=algebra), derivation)
 
 
 def _loop(
@@ -180,7 +181,7 @@ def _loop(
     network = at.network
     x = np.array(at.solved)
     moved: Any = Complexes(**beside.algebra.arguments, loop=list(at.solved))
-    near = replace(beside, algebra=moved).exchange(q, v)
+    near = Numeric(replace(beside.tree, algebra=moved)).exchange(q, v)
     assert near is not None
     slopes = np.array([[float(at.still(e)) for e in row] for row in network.loop_jacobian])
     gap = np.array([complex(near.still(r)).imag for r in network.loop])
