@@ -11,17 +11,13 @@ import random
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linegraph.algebra.protocol import Floats
-from linegraph.components.parameters import sample_values
 from linegraph.dynamics.mass_matrix import composites, mass_matrix
 from linegraph.errors import ModelError
-from linegraph.kinematics.tree import kinematic_tree
 from linegraph.kinematics.tree_state import TreeState
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from linegraph.formulation.formulate import Formulation
     from linegraph.kinematics.links import KinematicTree, Link
     from linegraph.model.system import System
 
@@ -142,13 +138,6 @@ def listed(names: Sequence[str]) -> str:
     return ", ".join(names[:-1]) + " and " * (len(names) > 1) + names[-1]
 
 
-def sample_tree(model: System, formulation: Formulation) -> KinematicTree:
-    """The links in numbers: the parameters' own values where they have some, any time, any inputs."""
-    anywhere = Floats(t=model.bounds.sometime, u=_Anything())
-    values = sample_values(model.parameters.values(), anywhere)
-    return kinematic_tree(model, formulation, anywhere, values)
-
-
 def _nothing(model: System) -> str:
     """What to tell of a model without states."""
     if not model.components:
@@ -162,13 +151,6 @@ def _negative(link: Link) -> ModelError:
     return ModelError(
         f'joint "{link.joint.name}"', f"{problem}: the mass matrix is not positive definite"
     )
-
-
-class _Anything:
-    """Inputs at which regularity is judged: it does not depend on them, but motions may."""
-
-    def __getitem__(self, place: int) -> float:
-        return 0.1 + 0.07 * place
 
 
 def is_solid(link: Link) -> bool:

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from linegraph.components.parameters import valued
+from linegraph.algebra.protocol import Floats
+from linegraph.components.parameters import sample_values, valued
+from linegraph.errors import ModelError
 from linegraph.ir.dag import Dag
-from linegraph.kinematics.tree import kinematic_tree
+from linegraph.kinematics.tree import kinematic_tree, under_inputs
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -46,6 +48,27 @@ class Formulated:
         return kinematic_tree(self.system, self.formulation, algebra, parameters)
 
     @cached_property
+    def sample(self) -> KinematicTree:
+        """The links in numbers: parameters' own values where they have some, any time, any inputs."""
+        anywhere = Floats(t=self.system.bounds.sometime, u=_Anything())
+        return self.tree(anywhere, sample_values(self.system.parameters.values(), anywhere))
+
+    def in_numbers(self, algebra: Floats, parameters: Mapping[str, float]) -> KinematicTree:
+        """The links in numbers: those of `sample` where the parameters are, at the algebra's time and inputs.
+
+        Raises:
+            ModelError: a prescribed motion has no value or no derivative there.
+        """
+        if self.valued:
+            try:
+                known = self.sample
+            except ModelError:
+                known = None  # a motion that has no value at any time may have one at this
+            if known is not None and known.parameters == parameters:
+                return under_inputs(known, self.formulation, algebra)
+        return self.tree(algebra, parameters)
+
+    @cached_property
     def structure(self) -> KinematicTree:
         """The links with every parameter and input a symbol: for counting and naming."""
         dag = Dag()
@@ -70,3 +93,10 @@ class Formulated:
     def topology_names(self) -> tuple[str, ...]:
         """Inertia edges that are branches by choice."""
         return tuple(f"{body}/inertia" for body in self.formulation.absolute)
+
+
+class _Anything:
+    """Inputs at a state like any other: what is judged there does not depend on them, but motions may."""
+
+    def __getitem__(self, place: int) -> float:
+        return 0.1 + 0.07 * place

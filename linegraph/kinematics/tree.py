@@ -45,6 +45,33 @@ def kinematic_tree(
     return _Walk(model, formulation, layout, algebra, parameters).along()
 
 
+def under_inputs(
+    tree: KinematicTree, formulation: Formulation, algebra: Algebra
+) -> KinematicTree:
+    """A tree at another time and for other inputs: what motions prescribe changes, the links do not.
+
+    Args:
+        tree: the links, over an algebra of the same kind.
+        formulation: the trees that were chosen.
+        algebra: has the time and the inputs.
+
+    Raises:
+        ModelError: a prescribed motion has no value or no derivative there.
+    """
+    layout = layout_of(tree.system, formulation, algebra, tree.parameters)
+    ends = {
+        name: replace(end, drive=layout.drives.get(name, ())) for name, end in tree.ends.items()
+    }
+    return replace(
+        tree,
+        algebra=algebra,
+        layout=layout,
+        links=tuple(replace(x, place=layout.places[x.joint.name]) for x in tree.links),
+        ends=ends,
+        closures=tuple(ends[closure.component.name] for closure in tree.closures),
+    )
+
+
 class _Walk:
     """Collects links on a walk from ground outward."""
 

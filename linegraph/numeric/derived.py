@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from linegraph.algebra.factorization import singular
-from linegraph.dynamics.regularity import Idle, massless, refusal, sample_tree
+from linegraph.dynamics.regularity import Idle, massless, refusal
 from linegraph.dynamics.symbol_names import symbol_names
 from linegraph.errors import ModelError
 from linegraph.formulation.formulate import formulate
@@ -63,8 +63,7 @@ class Derived(Formulated):
             ModelError: a mass or an inertia is negative, or the loops cannot be closed.
         """
         if not self.structure.closed:
-            tree = sample_tree(self.system, self.formulation)
-            return massless(tree, self._added) + self._empty_stores
+            return massless(self.sample, self._added) + self._empty_stores
         joints = self.assembled.massless if self.valued else ()
         return joints + self._empty_stores
 

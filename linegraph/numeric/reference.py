@@ -165,4 +165,4 @@ def over_floats(
 
     algebra = Floats(t=t, u=inputs)
     values = valued(formulated.system.parameters.values(), algebra, given)
-    return Numeric(formulated.tree(algebra, values), formulated)
+    return Numeric(formulated.in_numbers(algebra, values), formulated)

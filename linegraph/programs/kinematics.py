@@ -17,7 +17,6 @@ from linegraph.dynamics.momentum import (
     scaled,
     shared,
 )
-from linegraph.dynamics.regularity import sample_tree
 from linegraph.errors import ModelError
 from linegraph.ir.program import Program, Result, Routine, needed_for
 from linegraph.kinematics.frame_trees import NamedFrame, Tipped, seat_of, tipped
@@ -279,7 +278,7 @@ def require_mass(f: Workspace) -> None:
     Raises:
         ModelError: all that moves has no mass, for the parameters' own values.
     """
-    links = sample_tree(f.tree.system, f.derivation.formulation).links
+    links = f.derivation.sample.links
     if not sum(link.moments.mass for link in links) > 0:
         problem = (
             "all that moves has no mass together, so it has no centre of mass; give a body its mass, or "

@@ -15,7 +15,7 @@ import random
 from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.algebra.factorization import Factors, factored
-from linegraph.dynamics.regularity import SINGULAR, sample_tree
+from linegraph.dynamics.regularity import SINGULAR
 from linegraph.errors import ModelError
 from linegraph.ir.dag import Node
 from linegraph.ir.program import Argument, Call, Check, Program, Result, Routine
@@ -243,7 +243,7 @@ def _immobile(f: Workspace, frame: NamedFrame, rows: int) -> str:
 
     Named is the first direction that depends on those before it.
     """
-    tree = sample_tree(f.tree.system, f.derivation.formulation)
+    tree = f.derivation.sample
     way = tipped(tree, [seat_of(tree, frame.name)], masses=False)
     failures: list[int] = []
     for seed in (1, 2):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from linegraph.algebra.factorization import Solution, solve
 from linegraph.dynamics.articulated import forward_dynamics
 from linegraph.dynamics.potentials import unknown
-from linegraph.dynamics.regularity import is_solid, sample_tree
+from linegraph.dynamics.regularity import is_solid
 from linegraph.errors import ModelError
 from linegraph.ir.program import Argument, Call, Module, Program, Quantity, Result, Routine
 from linegraph.ir.prologue import COUNT, with_prologue
@@ -193,7 +193,7 @@ def _forward_dynamics(f: Workspace) -> Program:
     With solid bodies M cannot become singular, so articulated inertias need no scale to judge pivots by;
     where some link is not solid for the parameters' own values, the factors do the judging.
     """
-    solid = all(map(is_solid, sample_tree(f.tree.system, f.derivation.formulation).links))
+    solid = all(map(is_solid, f.derivation.sample.links))
     if f.armatures is None or f.tree.coupled or f.tree.levelled or not solid:
         return _factored(f)
     articulated = _articulated(f)

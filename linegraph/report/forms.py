@@ -23,7 +23,6 @@ from linegraph.notation.tree import (
     total,
 )
 from linegraph.notation.writing import pieces
-from linegraph.programs.workspace import Workspace
 from linegraph.report.document import (
     Block,
     Code,
@@ -68,7 +67,7 @@ class Forms:
         """Count operations; nothing is simplified before it is asked for."""
         self._subject = subject
         self._tell = tell
-        self._functions = Workspace(subject.derivation, subject.folded)
+        self._functions = subject.equations
 
     # -- how long they are
 

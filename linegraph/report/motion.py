@@ -79,9 +79,7 @@ def centers(subject: Subject) -> list[Block]:
 
 def _rows(subject: Subject) -> list[EquationRow]:
     """The place and the velocity of every mass centre; none where they have too many terms."""
-    from linegraph.programs.workspace import Workspace
-
-    scheme = Workspace(subject.derivation, subject.folded).edges
+    scheme = subject.equations.edges
     frames = {body: scheme.center(body) for body in subject.model.bodies}
     entries = [x for frame in frames.values() for x in (*frame.origin, *frame.linear)]
     if operations_of((Result("", (len(entries),), tuple(entries), ""),)) > MOST_OPERATIONS:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from linegraph.derivation import Derivation
     from linegraph.graph.multigraph import IntegerMatrix
     from linegraph.ir.program import Quantity
+    from linegraph.programs.workspace import Workspace
 
 LETTERS = {"w": "ω", "tau": "τ", "dphi": "Φ", "phi": "φ", "psi": "ψ"}
 """Letters of domains that are written otherwise."""
@@ -72,6 +73,13 @@ class Subject:
         self.look = Notation(derivation)
         self.level = level
         self.folded = folded
+
+    @cached_property
+    def equations(self) -> Workspace:
+        """The equations over a DAG: what counts operations, and what shows the shared intermediates."""
+        from linegraph.programs.workspace import Workspace
+
+        return Workspace(self.derivation, self.folded)
 
     @cached_property
     def algebra(self) -> Any:
