@@ -17,6 +17,7 @@ from linegraph.ir.program import PREPARED_SUFFIX, Module, Result, reads
 from linegraph.ir.prologue import PREPARE
 from linegraph.programs.frame_names import named_frames
 from linegraph.programs.register import OF_FRAMES, PROGRAMS, module_of, parameters_of
+from linegraph.programs.request import Request
 from linegraph.programs.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ def function(derivation: Derived, what: Any, frames: Iterable[str] = ()) -> Func
     folded = not derivation.system.parameters
     named = named_frames(derivation.system, frames)
     only = _maker(what) if named or what in PROGRAMS else ()
-    module = module_of(derivation, name, folded=folded, about=(), only=only, frames=named)
+    module = module_of(derivation, name, Request(folded, only=only, frames=named))
     known = [program.name for program in module.programs]
     if what in module.omitted:
         raise derivation.no_inverse([what])

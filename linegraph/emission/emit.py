@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import warnings
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Unpack
 
+import codegen
+from linegraph.emission.choices import Choices, chosen
 from linegraph.errors import ModelError
 from linegraph.files import write_all
 from linegraph.model.system import placed
@@ -12,11 +13,12 @@ from linegraph.numeric.derived import Derived
 from linegraph.pipeline import derived
 from linegraph.programs.frame_names import named_frames
 from linegraph.programs.register import ON_REQUEST, PROGRAMS, module_of
+from linegraph.programs.request import Request
 from linegraph.version import __version__
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Iterable, Sequence
     from pathlib import Path
 
     from linegraph.ir.golden_vectors import Vectors
@@ -40,32 +42,19 @@ def emit(
     *,
     name: str | None = None,
     languages: Iterable[str] | None = None,
-    folded: bool = False,
-    functions: Iterable[str] = (),
-    only: Iterable[str] = (),
-    frames: Iterable[str] = (),
     tests: bool = False,
-    progress: Callable[[str], None] | None = None,
-    warn: Callable[[str], None] | None = None,
-    **options: Any,
+    **choices: Unpack[Choices],
 ) -> list[Path]:
     """Derive a model and write its functions as source files.
 
     Args:
         model: the builder or the system.
-        out: the folder, made if need be.
+        out: the folder, created if missing.
         name: prefix of functions and files; default the model's name, cleaned to an identifier.
         languages: some of `codegen.LANGUAGES`; default all, for Arduino C alone.
-        folded: write the parameters' values into the code instead of keeping them symbolic.
-        functions: further functions to write, of `programs.register.ON_REQUEST`.
-        only: write nothing but these of `programs.register.PROGRAMS` and what they call.
-        frames: bodies, or frames of bodies as ``body.frame``, whose kinematics are to be written.
-        tests: write golden vectors, too: programs that check what is written against another route.
-        progress: called with a short text before each stage.
-        warn: called with what a reader must know of the files; default a Python warning.
-        **options: choices for C: ``trig`` ("libm" or "inline"), ``batch`` (functions of many states),
-            ``real`` ("double" or "float"), ``prefix`` (of functions, types and macros), ``cmake``,
-            ``arduino`` and ``report``, as `codegen.Options` says them.
+        tests: write golden vectors, too: programs that check the files against independently computed values.
+        **choices: ``folded``, ``functions``, ``only``, ``frames``, ``progress``, ``warn``; for C ``trig``,
+            ``batch``, ``real``, ``prefix``, ``cmake``, ``arduino``, ``report``. See `Choices`.
 
     Returns:
         The files written. Nothing is written unless everything could be rendered.
@@ -82,20 +71,7 @@ def emit(
         >>> [path.name for path in emit(model, tempfile.mkdtemp(), languages=["c", "python"])]
         ['pendulum.h', 'pendulum.c', 'pendulum.py']
     """
-    files = render(
-        model,
-        name=name,
-        languages=languages,
-        folded=folded,
-        functions=functions,
-        only=only,
-        frames=frames,
-        tests=tests,
-        progress=progress,
-        warn=warn,
-        **options,
-    )
-    return write_all(out, files)
+    return write_all(out, render(model, name=name, languages=languages, tests=tests, **choices))
 
 
 def render(
@@ -103,64 +79,34 @@ def render(
     *,
     name: str | None = None,
     languages: Iterable[str] | None = None,
-    folded: bool = False,
-    functions: Iterable[str] = (),
-    only: Iterable[str] = (),
-    frames: Iterable[str] = (),
     tests: bool = False,
-    progress: Callable[[str], None] | None = None,
-    warn: Callable[[str], None] | None = None,
-    **options: Any,
+    **choices: Unpack[Choices],
 ) -> dict[str, str]:
-    """What `emit` writes, as {file name: text}."""
-    import codegen
-
-    tell = progress or (lambda text: None)
-    choices = codegen.options_of(options)
-    asked = {name for name, x in options.items() if x != getattr(codegen.Options(), name)}
-    heeding = [x for x in codegen.LANGUAGES if asked & codegen.known(x).options]
-    default = heeding if choices.arduino else codegen.LANGUAGES
-    chosen = list(dict.fromkeys(_several(languages or default)))
-    frames, functions, only = _several(frames), _several(functions), _several(only)
-    for language in chosen:
-        if language not in codegen.LANGUAGES:
-            known = ", ".join(codegen.LANGUAGES)
-            raise ModelError(f'language "{language}"', f"is not known; known: {known}")
-    if asked and not set(heeding) & set(chosen):
-        whose, given = " or ".join(map(str.capitalize, heeding)), ", ".join(sorted(asked))
-        problem = f"{whose} is not written: add it to the languages"
-        raise ModelError(f"options of {whose} ({given})", problem)
+    """The text of every file that `emit` writes, by file name; the arguments are those of `emit`."""
+    of = chosen(choices)
+    written = of.languages(languages)
     prefix = codegen.naming.identifier(model.name) if name is None else name
-    tell("deriving")
-    _require_known(functions, only)
+    of.progress("deriving")
+    _require_known(of.functions, of.only)
     system = model.system()
-    named = named_frames(system, frames)
+    request = Request(of.folded, of.functions, of.only, named_frames(system, of.frames))
     derivation = derived(system, Derived)
-    module = _module(derivation, prefix, named, folded=folded, functions=functions, only=only)
+    module = _module(derivation, prefix, request)
     if module.omitted:
-        (warn or _python_warning)(str(derivation.no_inverse(module.omitted, asked=False)))
+        of.warn(str(derivation.no_inverse(module.omitted, asked=False)))
     files: dict[str, str] = {}
-    for language in chosen:
-        tell(f"writing {language}")
-        files |= codegen.render(module, language, choices)
+    for language in written:
+        of.progress(f"writing {language}")
+        files |= codegen.render(module, language, of.options)
     if tests:
-        tell("computing golden vectors")
-        found = _vectors(derivation, module, named)
-        for language in chosen:
-            checks = codegen.render_tests(module, found, language, choices)
+        of.progress("computing golden vectors")
+        found = _vectors(derivation, module, request.frames)
+        for language in written:
+            checks = codegen.render_tests(module, found, language, of.options)
             if not checks:
-                tell(f"{language} has no golden vectors")
+                of.progress(f"{language} has no golden vectors")
             files |= checks
     return files
-
-
-def _python_warning(text: str) -> None:
-    warnings.warn(text, stacklevel=4)
-
-
-def _several(names: Iterable[str]) -> tuple[str, ...]:
-    """Names; one alone is one."""
-    return (names,) if isinstance(names, str) else tuple(names)
 
 
 def _vectors(derivation: Derived, module: Module, frames: Sequence[NamedFrame]) -> Vectors:
@@ -195,40 +141,24 @@ def module_for(
     wanted, few = tuple(functions), tuple(only)
     _require_known(wanted, few)
     system = model.system()
-    named = named_frames(system, frames)
-    return _module(derived(system, Derived), name, named, folded=folded, functions=wanted, only=few)
+    request = Request(folded, wanted, few, named_frames(system, frames))
+    return _module(derived(system, Derived), name, request)
 
 
 def _require_known(wanted: Iterable[str], only: Iterable[str]) -> None:
     """Refuse functions that are not promised."""
-    for known, chosen in ((ON_REQUEST, wanted), (tuple(PROGRAMS), only)):
-        for function in chosen:
+    for known, asked in ((ON_REQUEST, wanted), (tuple(PROGRAMS), only)):
+        for function in asked:
             if function not in known:
                 raise ModelError(f'function "{function}"', f"is not one of {', '.join(known)}")
 
 
-def _module(
-    derivation: Derived,
-    name: str,
-    frames: Sequence[NamedFrame],
-    *,
-    folded: bool,
-    functions: Sequence[str],
-    only: Sequence[str],
-) -> Module:
+def _module(derivation: Derived, name: str, request: Request) -> Module:
     """The programs of a derivation, errors with their place in the model's file."""
     system = derivation.system
     about = [f"Equations of motion of {system.name}, derived by linegraph {__version__}."]
     about += [text for text in (system.about,) if text]
     try:
-        return module_of(
-            derivation,
-            name,
-            folded=folded,
-            about=[*about, *CONVENTIONS],
-            wanted=functions,
-            only=only,
-            frames=frames,
-        )
+        return module_of(derivation, name, request, [*about, *CONVENTIONS])
     except ModelError as error:
         raise placed(error, system) from None

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from linegraph.errors import ModelError
 from linegraph.ir.dag import ADD, DIV, MUL, NEG, SUB, SYMBOL, Dag, Node, Operand
-from linegraph.ir.program import assemble
+from linegraph.ir.program import Guards, assemble
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -196,7 +196,5 @@ def rewritten(program: Program, of: Callable[[Operand], Operand]) -> Program:
         made.about,
         made.arguments,
         made.results,
-        made.checks,
-        made.calls,
-        status=made.status,
+        Guards(made.checks, made.calls, made.status),
     )

@@ -209,20 +209,35 @@ class Module:
         return f"<module {self.name}: {', '.join(program.name for program in self.programs)}>"
 
 
+class Guards(NamedTuple):
+    """What stands between a function and its results.
+
+    Attributes:
+        checks: conditions at which it reports a status instead.
+        calls: functions that it calls first, whose results it reads.
+        status: whether it reports one even without checks of its own, as those that it calls do.
+    """
+
+    checks: tuple[Check, ...] = ()
+    calls: tuple[Call, ...] = ()
+    status: bool = False
+
+
+UNGUARDED = Guards()
+
+
 def assemble(
     name: str,
     about: str,
     arguments: tuple[Argument, ...],
     results: tuple[Result, ...],
-    checks: tuple[Check, ...] = (),
-    calls: tuple[Call, ...] = (),
-    *,
-    status: bool = False,
+    guards: Guards = UNGUARDED,
 ) -> Program:
     """Keep what the results need, put it in order and decide which nodes get a name.
 
     A node is named when it is used more than once or when the line would grow past `INLINE_LIMIT`.
     """
+    checks = guards.checks
     live = _live(_roots(results, checks))
     uses, negated = count_uses(live, results, checks)
     turned = frozenset(
@@ -231,7 +246,7 @@ def assemble(
         if node.op == SUB and uses[node.index] == negated.get(node.index, 0)
     )
     steps = _named(live, uses, {check.node.index for check in checks})
-    return Program(name, about, arguments, steps, results, turned, checks, calls, status)
+    return Program(name, about, arguments, steps, results, turned, *guards)
 
 
 def operations_of(results: tuple[Result, ...], checks: tuple[Check, ...] = ()) -> int:

@@ -45,9 +45,7 @@ def kinematic_tree(
     return _Walk(model, formulation, layout, algebra, parameters).along()
 
 
-def under_inputs(
-    tree: KinematicTree, formulation: Formulation, algebra: Algebra
-) -> KinematicTree:
+def under_inputs(tree: KinematicTree, formulation: Formulation, algebra: Algebra) -> KinematicTree:
     """A tree at another time and for other inputs: what motions prescribe changes, the links do not.
 
     Args:

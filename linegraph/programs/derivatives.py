@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from linegraph.algebra.differentiation import substitution
 from linegraph.algebra.factorization import factored, solve_many
 from linegraph.errors import ModelError
-from linegraph.ir.program import Listing, Quantity
+from linegraph.ir.program import Guards, Listing, Quantity
 from linegraph.kinematics import tangent_space as tangent
 from linegraph.programs import loop_derivatives as closed_derivatives
 from linegraph.programs import networks as network_programs
@@ -64,7 +64,11 @@ def forward_dynamics(f: Workspace) -> tuple[Program | Routine, ...]:
         *([matrix("da_du", found[second:], "derivatives by u")] if inputs else []),
     )
     about = "Derivatives of forward dynamics a = M(q)^-1 (Q(u) - h(q, v))."
-    return (f.program("forward_dynamics_derivatives", about, _STATE, results, checks, status=True),)
+    return (
+        f.program(
+            "forward_dynamics_derivatives", about, _STATE, results, Guards(checks, status=True)
+        ),
+    )
 
 
 def linearize(f: Workspace) -> tuple[Program | Routine, ...]:
@@ -88,7 +92,7 @@ def linearize(f: Workspace) -> tuple[Program | Routine, ...]:
         "Linearisation at any state, at rest or moving: small changes follow dx' = A dx + B du with "
         "dx = (d, dv), d along the velocities: dq = N(q) d."
     )
-    return (f.program("linearize", about, _STATE, results, checks, status=True),)
+    return (f.program("linearize", about, _STATE, results, Guards(checks, status=True)),)
 
 
 def inverse_dynamics_by_parameters(f: Workspace) -> tuple[Program | Routine, ...]:
@@ -116,7 +120,7 @@ def forward_dynamics_by_parameters(f: Workspace) -> tuple[Program | Routine, ...
     results = (matrix("da_dp", found, _BY_PARAMETERS),)
     about = "Derivatives of forward dynamics a = M(q)^-1 (Q(u) - h(q, v)) by the parameters."
     name = "forward_dynamics_parameter_derivatives"
-    return (f.program(name, about, _STATE, results, checks, status=True),)
+    return (f.program(name, about, _STATE, results, Guards(checks, status=True)),)
 
 
 def counts(f: Workspace, chosen: Iterable[str]) -> tuple[tuple[str, int], ...]:

@@ -14,7 +14,17 @@ from linegraph.dynamics.edge_quantities import (
     reaction_groups,
     reaction_quantities,
 )
-from linegraph.ir.program import Argument, Call, Listing, Program, Quantity, Result, Routine, reads
+from linegraph.ir.program import (
+    Argument,
+    Call,
+    Guards,
+    Listing,
+    Program,
+    Quantity,
+    Result,
+    Routine,
+    reads,
+)
 from linegraph.kinematics.state_layout import EFFORT_UNITS
 
 if TYPE_CHECKING:
@@ -175,4 +185,4 @@ def _after_dynamics(f: Workspace, name: str, about: str, results: tuple[Result, 
     if f.tree.closed:
         solved.append(Argument("lam", len(f.constraint_equations), f.texts["lam"]))
     call = Call("forward_dynamics", (*f.head, "q", "v", "u"), tuple(solved))
-    return f.program(name, about, ("q", "v", "u"), results, (), (call,), status=True)
+    return f.program(name, about, ("q", "v", "u"), results, Guards(calls=(call,), status=True))

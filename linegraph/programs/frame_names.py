@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from linegraph.model.system import System
 
 
-def named_frames(model: System, frames: Iterable[str]) -> list[NamedFrame]:
+def named_frames(model: System, frames: Iterable[str]) -> tuple[NamedFrame, ...]:
     """Bodies and ``body.frame`` with their identifiers.
 
     Raises:
@@ -25,4 +25,4 @@ def named_frames(model: System, frames: Iterable[str]) -> list[NamedFrame]:
     for name in names:
         require_frame(model, name)
     called = naming.identifiers(names, "frame", naming.stem)
-    return [NamedFrame(*pair) for pair in zip(called, names, strict=True)]
+    return tuple(NamedFrame(*pair) for pair in zip(called, names, strict=True))

@@ -25,7 +25,7 @@ from linegraph.ir.program import Program, Result, Routine
 from linegraph.ir.statuses import CONTRADICTION, NOT_DETERMINED, SINGULAR_INERTIA, SINGULAR_POSITION
 from linegraph.kinematics import tangent_space as tangent
 from linegraph.numeric.loop_closure import at_some_time
-from linegraph.programs.loops import assembly, independent, routine
+from linegraph.programs.loops import Algorithm, assembly, independent, routine
 from linegraph.programs.slopes import columns, matrix, of_motion, turned, variables
 
 if TYPE_CHECKING:
@@ -65,7 +65,9 @@ def linearize(f: Workspace) -> tuple[Program | Routine, ...]:
     )
     given = ("q", "v", "u")
     statuses = (SINGULAR_POSITION, SINGULAR_INERTIA, CONTRADICTION, NOT_DETERMINED)
-    made = routine(f, "linearize", about, given, tuple(results), "linearization", statuses, calls)
+    made = routine(
+        f, "linearize", about, given, tuple(results), Algorithm("linearization", statuses, calls)
+    )
     return (_slopes(f), replace(made, details=(*made.details, ("d_at", tuple(free)))))
 
 

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING
 from linegraph.programs.loops import assembly
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from linegraph.programs.workspace import Workspace
 
 
-def remarks(f: Workspace) -> tuple[str, ...]:
+def remarks(f: Workspace, chosen: Sequence[str]) -> tuple[str, ...]:
     """What the head of a file says of a closed system."""
     if not f.tree.closed:
         return ()

@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from linegraph.components.parameters import resolver
 from linegraph.dynamics.circuit_lengths import sizes
 from linegraph.errors import ModelError
-from linegraph.ir.program import Argument, Listing, Program, Quantity, Result, Routine, reads
+from linegraph.ir.program import (
+    Argument,
+    Guards,
+    Listing,
+    Program,
+    Quantity,
+    Result,
+    Routine,
+    reads,
+)
 from linegraph.ir.statuses import (
     CONTRADICTION,
     NO_VELOCITY,
@@ -21,7 +30,7 @@ from linegraph.numeric.loop_closure import at_some_time
 from linegraph.programs import networks as network_programs
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from linegraph.algebra.scalar import Scalar
     from linegraph.ir.program import Status
@@ -97,7 +106,7 @@ def _whole(f: Workspace) -> Program:
         _column("gam", _stabilised(f), "what J vdot must be"),
     )
     checks = network_programs.checks(f)
-    return f.program("constrained_equations", about, ("q", "v"), results, checks)
+    return f.program("constrained_equations", about, ("q", "v"), results, Guards(checks))
 
 
 def forward_dynamics(f: Workspace) -> tuple[Routine, ...]:
@@ -122,6 +131,14 @@ def forward_dynamics(f: Workspace) -> tuple[Routine, ...]:
         f"{_baumgarte_text(f)}"
     )
     statuses = (SINGULAR_POSITION, SINGULAR_INERTIA, CONTRADICTION)
+    calls = (
+        "constrained_equations",
+        *_phi_calls(f),
+        "constraint_rates",
+        "constraint_bias",
+        "constraint_sizes",
+        "coordinate_rates",
+    )
     return (
         routine(
             f,
@@ -129,16 +146,7 @@ def forward_dynamics(f: Workspace) -> tuple[Routine, ...]:
             about,
             ("q", "v", "u"),
             results,
-            "constrained_dynamics",
-            statuses,
-            (
-                "constrained_equations",
-                *_phi_calls(f),
-                "constraint_rates",
-                "constraint_bias",
-                "constraint_sizes",
-                "coordinate_rates",
-            ),
+            Algorithm("constrained_dynamics", statuses, calls),
         ),
     )
 
@@ -169,9 +177,7 @@ def project(f: Workspace) -> tuple[Program | Routine, ...]:
             about,
             ("q", "v"),
             results,
-            "project",
-            (NOT_CLOSED, NO_VELOCITY),
-            (*calls, "coordinate_rates"),
+            Algorithm("project", (NOT_CLOSED, NO_VELOCITY), (*calls, "coordinate_rates")),
         ),
     )
 
@@ -193,14 +199,16 @@ def reduction(f: Workspace) -> tuple[Program | Routine, ...]:
             Result("q_on", (len(f.q),), (), "coordinates"),
             Result("v_on", (n,), (), "velocities"),
         ),
-        "complete",
-        (NOT_CLOSED, NOT_DETERMINED),
-        (
-            *_phi_calls(f),
-            "constraint_jacobian",
-            "constraint_rates",
-            "constraint_sizes",
-            "coordinate_rates",
+        Algorithm(
+            "complete",
+            (NOT_CLOSED, NOT_DETERMINED),
+            (
+                *_phi_calls(f),
+                "constraint_jacobian",
+                "constraint_rates",
+                "constraint_sizes",
+                "coordinate_rates",
+            ),
         ),
     )
     tangent = routine(
@@ -213,15 +221,17 @@ def reduction(f: Workspace) -> tuple[Program | Routine, ...]:
             Result("T", (n, k), (), "all velocities for unit w"),
             Result("rest", (n,), (), "vdot at wdot = 0"),
         ),
-        "reduction",
-        (NOT_DETERMINED,),
-        (
-            *_phi_calls(f),
-            "constraint_jacobian",
-            "constraint_rates",
-            "constraint_bias",
-            "constraint_sizes",
-            "coordinate_rates",
+        Algorithm(
+            "reduction",
+            (NOT_DETERMINED,),
+            (
+                *_phi_calls(f),
+                "constraint_jacobian",
+                "constraint_rates",
+                "constraint_bias",
+                "constraint_sizes",
+                "coordinate_rates",
+            ),
         ),
     )
     reduced = routine(
@@ -231,9 +241,7 @@ def reduction(f: Workspace) -> tuple[Program | Routine, ...]:
         "hr = T^T (h + M rest).",
         ("q", "v"),
         (Result("Mr", (k, k), (), "reduced mass matrix"), Result("hr", (k,), (), "reduced bias")),
-        "reduced_equations",
-        (NOT_DETERMINED,),
-        ("equations", "reduction"),
+        Algorithm("reduced_equations", (NOT_DETERMINED,), ("equations", "reduction")),
     )
     return complete, tangent, reduced
 
@@ -290,8 +298,10 @@ def assembly(f: Workspace) -> Assembly:
     return f.derivation.assembled
 
 
-def listings(f: Workspace) -> tuple[Listing, ...]:
+def listings(f: Workspace, chosen: Sequence[str]) -> tuple[Listing, ...]:
     """Constraints with their multipliers, and the independent coordinates."""
+    if not f.tree.closed:
+        return ()
     unique = assembly(f).unique
     multipliers = tuple(
         Quantity(
@@ -303,16 +313,32 @@ def listings(f: Workspace) -> tuple[Listing, ...]:
     constraints_ = Listing("constraint", "NC", heading, multipliers, ("lam", "gam", "rates"))
     if f.tree.network is not None:
         return (constraints_,)
-    chosen = tuple(f.tree.velocities[v] for _, v in independent(f))
+    free = tuple(f.tree.velocities[v] for _, v in independent(f))
     return (
         constraints_,
-        Listing("independent", "NI", "independent velocities", chosen, ("w",)),
+        Listing("independent", "NI", "independent velocities", free, ("w",)),
     )
 
 
-def counts(f: Workspace) -> tuple[tuple[str, int], ...]:
+def counts(f: Workspace, chosen: Sequence[str]) -> tuple[tuple[str, int], ...]:
     """How many constraints are of position, and how many are independent."""
+    if not f.tree.closed:
+        return ()
     return (("NP", _positions(f)), ("RANK", assembly(f).rank))
+
+
+class Algorithm(NamedTuple):
+    """How a function that iterates or decides works.
+
+    Attributes:
+        name: of its algorithm.
+        statuses: what it may report.
+        calls: the functions it calls.
+    """
+
+    name: str
+    statuses: tuple[Status, ...]
+    calls: tuple[str, ...]
 
 
 def routine(
@@ -321,13 +347,13 @@ def routine(
     about: str,
     arguments: tuple[str, ...],
     results: tuple[Result, ...],
-    algorithm: str,
-    statuses: tuple[Status, ...],
-    calls: tuple[str, ...],
+    algorithm: Algorithm,
 ) -> Routine:
     """A routine; it takes the inputs too where what it calls does."""
     # a motion prescribed by input is in M and h
-    moved = (f.mass_result, f.bias_result) if {"mass_matrix", "equations"} & {*calls} else ()
+    moved = (
+        (f.mass_result, f.bias_result) if {"mass_matrix", "equations"} & {*algorithm.calls} else ()
+    )
     if (f.driven_constraints or reads("u", moved)) and "u" not in arguments:
         place = sum(argument in ("q", "v", "s", "w") for argument in arguments)
         arguments = (*arguments[:place], "u", *arguments[place:])
@@ -346,7 +372,7 @@ def routine(
         ("s_at", tuple(q for q, _ in chosen)),
         ("w_at", tuple(v for _, v in chosen)),
     )
-    return Routine(name, about, given, results, algorithm, statuses, calls, details)
+    return Routine(name, about, given, results, *algorithm, details)
 
 
 def _quaternions(f: Workspace) -> tuple[int, ...]:

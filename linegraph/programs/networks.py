@@ -10,6 +10,8 @@ from linegraph.ir.statuses import NO_LOOP_SOLUTION, SINGULAR_NETWORK
 from linegraph.programs.workspace import LOOP_FUNCTION
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from linegraph.kinematics.links import KinematicTree
     from linegraph.programs.workspace import Workspace
 
@@ -60,7 +62,7 @@ def checks(f: Workspace) -> tuple[Check, ...]:
     return tuple(Check(size, 0, *SINGULAR_NETWORK) for size in sizes if isinstance(size, Node))
 
 
-def remarks(f: Workspace) -> tuple[str, ...]:
+def remarks(f: Workspace, chosen: Sequence[str]) -> tuple[str, ...]:
     """What the head of a file says of networks."""
     if f.tree.network is None:
         return ()
@@ -90,6 +92,11 @@ def rhs(f: Workspace) -> tuple[Program | Routine, ...]:
             ("coordinate_rates", "forward_dynamics"),
         ),
     )
+
+
+def listings(f: Workspace, chosen: Sequence[str]) -> tuple[Listing, ...]:
+    """The names of x, where `rhs` takes it."""
+    return (state_listing(f.tree),) if "rhs" in chosen else ()
 
 
 def state_listing(tree: KinematicTree) -> Listing:

@@ -18,7 +18,7 @@ from linegraph.algebra.factorization import Factors, factored
 from linegraph.dynamics.regularity import SINGULAR
 from linegraph.errors import ModelError
 from linegraph.ir.dag import Node
-from linegraph.ir.program import Argument, Call, Check, Program, Result, Routine
+from linegraph.ir.program import Argument, Call, Check, Guards, Program, Result, Routine
 from linegraph.ir.statuses import counted
 from linegraph.kinematics.frame_trees import seat_of, tipped
 from linegraph.kinematics.tree_state import TreeState
@@ -137,7 +137,7 @@ def _operational(f: Workspace, frame: NamedFrame, function: str, dynamics: _Dyna
     name = f"frame_{frame.identifier}_{function}"
     about = _about(frame, rows, closed=f.tree.closed)
     arguments = tuple(dict.fromkeys(given))
-    return f.program(name, about, arguments, results, checks, dynamics.calls, status=True)
+    return f.program(name, about, arguments, results, Guards(checks, dynamics.calls, status=True))
 
 
 def _about(frame: NamedFrame, rows: int, *, closed: bool) -> str:

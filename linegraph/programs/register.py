@@ -10,7 +10,7 @@ from linegraph.dynamics.articulated import forward_dynamics
 from linegraph.dynamics.potentials import unknown
 from linegraph.dynamics.regularity import is_solid
 from linegraph.errors import ModelError
-from linegraph.ir.program import Argument, Call, Module, Program, Quantity, Result, Routine
+from linegraph.ir.program import Argument, Call, Guards, Module, Program, Quantity, Result, Routine
 from linegraph.ir.prologue import COUNT, with_prologue
 from linegraph.ir.sums import with_sums_collected
 from linegraph.programs import derivatives as derivative_programs
@@ -22,86 +22,70 @@ from linegraph.programs import loop_remarks as closed_remarks
 from linegraph.programs import loops as closed_programs
 from linegraph.programs import networks as network_programs
 from linegraph.programs import operational_space as operational_programs
+from linegraph.programs.family import Family
+from linegraph.programs.request import Request
 from linegraph.programs.workspace import ARGUMENTS, Workspace
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from linegraph.algebra.scalar import Scalar
-    from linegraph.kinematics.frame_trees import NamedFrame
     from linegraph.model.system import System
     from linegraph.networks import Network
     from linegraph.numeric.derived import Derived
     from linegraph.programs.division import Made
 
 
+EVERYTHING = Request()
+"""All functions that are made by default, with parameters as symbols."""
+
+
 def module_of(
     derivation: Derived,
     name: str,
-    *,
-    folded: bool,
-    about: Iterable[str],
-    wanted: Iterable[str] = (),
-    only: Iterable[str] = (),
-    frames: Iterable[NamedFrame] = (),
-    prologue: bool = True,
+    request: Request = EVERYTHING,
+    about: Iterable[str] = (),
 ) -> Module:
     """All functions of a model.
 
     Args:
         derivation: the model with its graph and its tree.
         name: prefix of everything emitted; an identifier.
-        folded: whether parameters become numbers.
+        request: which functions, and how.
         about: paragraphs for the head of the file.
-        wanted: further functions to emit, of `ON_REQUEST`.
-        only: nothing but these of `PROGRAMS`, those `wanted`, and what they call; all if there are none.
-        frames: the frames whose kinematics are to be emitted.
-        prologue: whether what parameters alone determine is hoisted into a function of its own.
 
     Raises:
         ModelError: a parameter has no value, a closed model cannot be assembled, or it has no function of
             those asked for.
     """
     parameters = parameters_of(derivation)
-    wanted, only, frames = tuple(wanted), tuple(only), tuple(frames)
-    asked = _asked(wanted, only, frames)
-    functions = Workspace(derivation, folded or not parameters, frames, asked)
+    asked = _asked(request)
+    functions = Workspace(derivation, request.folded or not parameters, request.frames, asked)
     made, omitted = _made(functions, [key for key in PROGRAMS if key in asked])
-    _require_made(derivation, dict.fromkeys((*only, *wanted)), made)
+    _require_made(derivation, dict.fromkeys((*request.only, *request.wanted)), made)
     chosen = [key for key in PROGRAMS if key in made]
     programs = tuple(program for key in chosen for program in made[key])
     functions.dag.release()
-    hoisted = prologue and "p" in functions.head
+    hoisted = request.prologue and "p" in functions.head
     programs, constants = with_prologue(programs) if hoisted else (with_sums_collected(programs), 0)
     tree = functions.tree
-    closed = closed_programs.listings(functions) if tree.closed else ()
-    whole = (network_programs.state_listing(tree),) if "rhs" in chosen else ()
     return Module(
         name=name,
         about=(
             *about,
-            *closed_remarks.remarks(functions),
-            *network_programs.remarks(functions),
-            *operational_programs.remarks(functions, chosen),
+            *(x for family in FAMILIES for x in family.remarks(functions, chosen)),
             *division.remarks(functions, omitted),
         ),
         positions=tree.positions,
         velocities=tree.velocities,
         inputs=tree.inputs,
-        parameters=() if folded else parameters,
+        parameters=() if request.folded else parameters,
         time=derivation.system.depends_on_time,
         programs=programs,
-        listings=(
-            *whole,
-            *closed,
-            *edge_programs.listings(functions, chosen),
-            *parameter_programs.listings(functions, chosen),
-            *derivative_programs.listings(functions, chosen),
-        ),
+        listings=tuple(x for family in FAMILIES for x in family.listings(functions, chosen)),
         counts=(
-            *(closed_programs.counts(functions) if tree.closed else ()),
+            *(x for family in FAMILIES for x in family.counts(functions, chosen)),
             *([(COUNT, constants)] if constants else []),
-            *derivative_programs.counts(functions, chosen),
         ),
         omitted=omitted,
     )
@@ -124,10 +108,9 @@ def _require_made(derivation: Derived, keys: Iterable[str], made: Mapping[str, M
             raise ModelError(f'function "{key}"', problem)
 
 
-def _asked(
-    wanted: tuple[str, ...], only: tuple[str, ...], frames: tuple[NamedFrame, ...]
-) -> tuple[str, ...]:
+def _asked(request: Request) -> tuple[str, ...]:
     """The keys of `PROGRAMS` that are asked for."""
+    wanted, only, frames = request.wanted, request.only, request.frames
     if not only:
         asked = (*(set(PROGRAMS) - set(ON_REQUEST)), *wanted)
         return (*asked, *kinematic_programs.besides(asked, frames))
@@ -263,7 +246,9 @@ def _solved(
     about = "Forward dynamics a = M(q)^-1 (Q(u) - h(q, v))."
     given = ("q", "v", "u")
     checks = pivots.checks(f, solution.pivots, bounds) + network_programs.checks(f)
-    return f.program("forward_dynamics", about, given, (result,), checks, calls, status=True)
+    return f.program(
+        "forward_dynamics", about, given, (result,), Guards(checks, calls, status=True)
+    )
 
 
 def _coordinate_rates(f: Workspace) -> Program:
@@ -331,6 +316,17 @@ PROGRAMS: dict[str, Maker] = {
     "inertial_parameters": parameter_programs.values_program,
 }
 """The register of emitted functions, in emitted order: what a user may ask for, and what makes them."""
+
+FAMILIES = (
+    Family(network_programs.listings),
+    Family(closed_programs.listings, closed_programs.counts, closed_remarks.remarks),
+    Family(remarks=network_programs.remarks),
+    Family(edge_programs.listings),
+    Family(parameter_programs.listings),
+    Family(derivative_programs.listings, derivative_programs.counts),
+    Family(remarks=operational_programs.remarks),
+)
+"""What families of functions add to a file besides them, in the order in which the file has it."""
 
 OF_FRAMES = ("frames", "operational_space", "operational_position")
 """What there is of frames only."""

@@ -17,6 +17,7 @@ from linegraph.model.system import placed, variant
 from linegraph.numeric.derived import Derived
 from linegraph.pipeline import derived
 from linegraph.programs.register import module_of
+from linegraph.programs.request import Request
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -135,10 +136,10 @@ def _judged(derivation: Derived, choices: dict[str, Any], chosen: bool) -> Candi
     module = module_of(
         derivation,
         "counted",
-        folded=False,
-        about=(),
-        only=("constraints", "equations") if derivation.structure.closed else ("equations",),
-        prologue=False,
+        Request(
+            only=("constraints", "equations") if derivation.structure.closed else ("equations",),
+            prologue=False,
+        ),
     )
     programs = {p.name: p for p in module.programs if isinstance(p, Program)}
     whole = programs.get("constrained_equations", programs["equations"])

@@ -14,9 +14,10 @@ from linegraph.dynamics.equations import StateEquations
 from linegraph.dynamics.network_state import ALL, NONE
 from linegraph.ir.dag import Dag
 from linegraph.ir.program import (
+    UNGUARDED,
     Argument,
     Call,
-    Check,
+    Guards,
     Program,
     Result,
     assemble,
@@ -113,10 +114,7 @@ class Workspace(StateEquations):
         about: str,
         arguments: tuple[str, ...],
         results: tuple[Result, ...],
-        checks: tuple[Check, ...] = (),
-        calls: tuple[Call, ...] = (),
-        *,
-        status: bool = False,
+        guards: Guards = UNGUARDED,
     ) -> Program:
         """Assemble a function; the arguments follow the contract's order ``p, t, q, v, u, a``.
 
@@ -134,12 +132,12 @@ class Workspace(StateEquations):
             solved = Argument("loop", self.sizes["loop"], ARGUMENTS["loop"])
             given_names = (*self.head, *needed)
             call = Call(LOOP_FUNCTION, given_names, (solved,))
-            calls = (call, *calls)
+            guards = guards._replace(calls=(call, *guards.calls))
         given = tuple(
             Argument(argument, self.sizes.get(argument), ARGUMENTS[argument])
             for argument in (*self.head, *arguments)
         )
-        return assemble(name, about, given, results, checks, calls, status=status)
+        return assemble(name, about, given, results, guards)
 
     @cached_property
     def loop_arguments(self) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ from linegraph.ir.dag import SYMBOL, Node
 from linegraph.ir.program import Program
 from linegraph.notation.tree import FUNCTION, ZERO, Math, Name
 from linegraph.programs.register import module_of
+from linegraph.programs.request import Request
 from linegraph.report.document import EquationRow, Group, IntermediateList
 from linegraph.report.nodes import Nodes
 
@@ -74,10 +75,11 @@ def listed_program(subject: Subject, which: str) -> tuple[IntermediateList, list
     module = module_of(
         subject.derivation,
         "report",
-        folded=subject.folded,
-        about=(),
-        only=(only,) if which != "constrained" else ("constraints", "equations"),
-        prologue=False,
+        Request(
+            folded=subject.folded,
+            only=(only,) if which != "constrained" else ("constraints", "equations"),
+            prologue=False,
+        ),
     )
     programs = [p for p in module.programs if isinstance(p, Program) and p.name in shown]
     groups: list[Group] = []

@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from linegraph.networks.network import INPUTS
-from linegraph.verification.golden.steps import STEP, stepped
+from linegraph.verification.golden.steps import STEP, Beside, stepped
 
 if TYPE_CHECKING:
     from linegraph.dynamics.network_state import Exchange
@@ -94,7 +94,7 @@ def _stored_rates(point: Point) -> dict[str, float]:
     q = [complex(x, STEP * float(dx)) for x, dx in zip(point.q, rates, strict=True)]
     v = [complex(x, STEP * float(dx)) for x, dx in zip(point.v, a, strict=True)]
     u = [complex(x, STEP * dx) for x, dx in zip(point.u, _input_rates(point), strict=True)]
-    numeric: Any = stepped(walk.numeric, q, v, u=u, t=complex(point.t, STEP))
+    numeric: Any = stepped(walk.numeric, Beside(q, v, u, complex(point.t, STEP)))
     beside = numeric.exchange(q, v)
     assert beside is not None
     stored = beside.network.energy

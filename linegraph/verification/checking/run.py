@@ -56,7 +56,7 @@ def check(derivation: Derived, seed: int = 0) -> Findings:
 def _check(derivation: Derived, seed: int) -> Findings:
     tree = derivation.structure
     # first of all, since what the structure forbids is no law that bounds could help
-    module = module_of(derivation, "checked", folded=False, about=())
+    module = module_of(derivation, "checked")
     points, moving = _points(derivation, seed)
     tally = Tally(_names(derivation))
     unjudged = _unjudged(derivation, moving=moving)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from linegraph.dynamics.chords import equations
 from linegraph.verification.golden.bodies import Bodies
 from linegraph.verification.golden.constraints import Constraints
-from linegraph.verification.golden.steps import STEP, Complexes, stepped
+from linegraph.verification.golden.steps import STEP, Beside, Complexes, stepped
 from linegraph.verification.golden.walk import Walk, coordinate_rates
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ class Derivatives:
         point = self.point
         q, v = _moved(point.q, dq), _moved(point.v, dv)
         u = _moved(point.u, du) if len(du) else None
-        numeric = stepped(point.walk.numeric, q, v, u=u, parameters=parameters, held=held)
+        numeric = stepped(point.walk.numeric, Beside(q, v, u, parameters=parameters), held=held)
         return Walk(numeric, q, v)
 
     @property

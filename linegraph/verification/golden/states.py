@@ -62,11 +62,12 @@ def vectors(
     Example:
         >>> from linegraph import Model, derive
         >>> from linegraph.programs.register import module_of
+        >>> from linegraph.programs.request import Request
         >>> model = Model("pendulum")
         >>> bob = model.body("bob", mass=2.0, mass_center=(0, 0, -0.5))
         >>> _ = model.revolute("hinge", between=("ground", bob), axis=(0, 1, 0))
         >>> derivation = derive(model)
-        >>> module = module_of(derivation, "pendulum", folded=True, about=(), only=("mass_matrix",))
+        >>> module = module_of(derivation, "pendulum", Request(folded=True, only=("mass_matrix",)))
         >>> vectors(derivation, module).values["M"].rows[0]
         (0.5,)
     """

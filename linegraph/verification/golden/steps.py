@@ -11,7 +11,7 @@ from __future__ import annotations
 import cmath
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.components.parameters import valued
 from linegraph.errors import ModelError
@@ -127,27 +127,32 @@ _STEEP = {"asin": 1.0, "acos": 1.0}
 """Where, up to its sign, the slope of a function is infinite; a complex step makes a large number of it."""
 
 
-def stepped(
-    numeric: Numeric,
-    q: Sequence[Scalar],
-    v: Sequence[Scalar],
-    *,
-    u: Sequence[Scalar] | None = None,
-    t: Scalar | None = None,
-    parameters: Mapping[str, Scalar] | None = None,
-    held: bool = False,
-) -> Numeric:
-    """The numeric reference for a state beside the real one, for inputs and parameters beside theirs.
+class Beside(NamedTuple):
+    """A state beside the real one; what is None is as it is there.
+
+    Attributes:
+        q, v: coordinates and velocities.
+        u: inputs.
+        t: the time.
+        parameters: values in place of the model's; what is derived from them is so again.
+    """
+
+    q: Sequence[Scalar]
+    v: Sequence[Scalar]
+    u: Sequence[Scalar] | None = None
+    t: Scalar | None = None
+    parameters: Mapping[str, Scalar] | None = None
+
+
+def stepped(numeric: Numeric, beside: Beside, *, held: bool = False) -> Numeric:
+    """The numeric reference for a state beside the real one.
 
     Args:
-        numeric: the model in floats.
-        q: coordinates.
-        v: velocities.
-        u: inputs; those of `numeric` if left out.
-        t: the time; that of `numeric` if left out.
-        parameters: values in place of those of `numeric`; what is derived from them is so again.
+        numeric: the model in floats, at the real state's time and inputs.
+        beside: the other state.
         held: whether unknowns of algebraic loops stay what they are at the real state.
     """
+    q, v, u, t, parameters = beside
     given = numeric.algebra.arguments
     tree, values = numeric.tree, numeric.parameters
     algebra: Any = Complexes(
