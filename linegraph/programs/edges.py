@@ -135,43 +135,63 @@ def outputs(f: Workspace) -> tuple[Program | Routine, ...]:
 
 def listings(f: Workspace, chosen: Sequence[str]) -> tuple[Listing, ...]:
     """The names of everything these functions return."""
-    found = []
-    if "across" in chosen:
-        names = list(f.edges.across())
-        heading = (
-            "across variables: of each edge velocity and angular velocity x, y, z, in ground axes"
-        )
-        more = network_quantities(f.tree.system, f.tree.network, 0)
-        quantities = (*across_quantities(names), *more)
-        groups = (*across_groups(names), *((quantity, 1) for quantity in more))
-        heading += "; of edges of networks one" * bool(more)
-        found.append(Listing("across", "NX", heading, quantities, ("X",), groups))
-    more = network_quantities(f.tree.system, f.tree.network, 1)
-    if "reactions" in chosen and (_joints(f) or more):
-        quantities = (*reaction_quantities(f.tree.system, _joints(f)), *more)
-        groups = (*reaction_groups(_joints(f)), *((quantity, 1) for quantity in more))
-        axes = reaction_axes(f.tree.system)
-        heading = f"reactions: of each joint force and torque x, y, z on its head, in {axes} axes"
-        heading += "; of edges of networks what flows through" * bool(more)
-        found.append(Listing("reaction", "NR", heading, quantities, ("R",), groups))
-    driven = f.edges.drives() if "drives" in chosen else {}
-    if driven:
-        known = {q.name: q for joint in f.tree.system.joints for q in joint.velocities()}
-        quantities = tuple(
-            Quantity(name, EFFORT_UNITS[known[name].unit], f"drives {name}") for name in driven
-        )
-        found.append(Listing("drive", "ND", "driving forces", quantities, ("D",)))
-    if "power" in chosen:
-        names = list(powers(f.edges.edges())[0])
-        names += list(network_powers(f.tree.network, f.edges.network())[0])
-        quantities = tuple(Quantity(name, "W", f"power of {name}") for name in names)
-        found.append(Listing("power", "NE", "powers", quantities, ("P",)))
-    if "outputs" in chosen and f.tree.system.outputs:
-        quantities = tuple(
-            Quantity(o.name, o.unit, o.about or str(o.value)) for o in f.tree.system.outputs
-        )
-        found.append(Listing("output", "NY", "outputs", quantities, ("y",)))
-    return tuple(found)
+    return tuple(x for key, of in _LISTINGS.items() if key in chosen for x in of(f))
+
+
+def _of_across(f: Workspace) -> tuple[Listing, ...]:
+    names = list(f.edges.across())
+    heading = "across variables: of each edge velocity and angular velocity x, y, z, in ground axes"
+    more = network_quantities(f.tree.system, f.tree.network, 0)
+    quantities = (*across_quantities(names), *more)
+    groups = (*across_groups(names), *((quantity, 1) for quantity in more))
+    heading += "; of edges of networks one" * bool(more)
+    return (Listing("across", "NX", heading, quantities, ("X",), groups),)
+
+
+def _of_reactions(f: Workspace) -> tuple[Listing, ...]:
+    names, more = _joints(f), network_quantities(f.tree.system, f.tree.network, 1)
+    if not (names or more):
+        return ()
+    quantities = (*reaction_quantities(f.tree.system, names), *more)
+    groups = (*reaction_groups(names), *((quantity, 1) for quantity in more))
+    axes = reaction_axes(f.tree.system)
+    heading = f"reactions: of each joint force and torque x, y, z on its head, in {axes} axes"
+    heading += "; of edges of networks what flows through" * bool(more)
+    return (Listing("reaction", "NR", heading, quantities, ("R",), groups),)
+
+
+def _of_drives(f: Workspace) -> tuple[Listing, ...]:
+    driven = f.edges.drives()
+    if not driven:
+        return ()
+    known = {q.name: q for joint in f.tree.system.joints for q in joint.velocities()}
+    quantities = tuple(
+        Quantity(name, EFFORT_UNITS[known[name].unit], f"drives {name}") for name in driven
+    )
+    return (Listing("drive", "ND", "driving forces", quantities, ("D",)),)
+
+
+def _of_power(f: Workspace) -> tuple[Listing, ...]:
+    names = list(powers(f.edges.edges())[0])
+    names += list(network_powers(f.tree.network, f.edges.network())[0])
+    quantities = tuple(Quantity(name, "W", f"power of {name}") for name in names)
+    return (Listing("power", "NE", "powers", quantities, ("P",)),)
+
+
+def _of_outputs(f: Workspace) -> tuple[Listing, ...]:
+    asked = f.tree.system.outputs
+    quantities = tuple(Quantity(o.name, o.unit, o.about or str(o.value)) for o in asked)
+    return (Listing("output", "NY", "outputs", quantities, ("y",)),) if asked else ()
+
+
+_LISTINGS = {
+    "across": _of_across,
+    "reactions": _of_reactions,
+    "drives": _of_drives,
+    "power": _of_power,
+    "outputs": _of_outputs,
+}
+"""By function, the names of what it returns."""
 
 
 def _joints(f: Workspace) -> list[str]:
