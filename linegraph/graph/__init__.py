@@ -1,5 +1,5 @@
-"""Terminal graphs without physics.
+"""Terminal graphs without physics: vertices, oriented edges and exact integer matrices.
 
-Oriented multigraphs and their union into the system graph (`multigraph`); forests, their branches and chords,
-cutset and circuit matrices (`forest`).
+`multigraph` has oriented multigraphs and their union, the system graph; `forest` chooses a forest in it and
+derives branches, chords, the cutset matrix and the circuit matrix.
 """

@@ -1,12 +1,12 @@
-"""Stage 2: what was chosen. A forest, its branches and chords, cutset and circuit equations.
+"""A forest in the system graph: branches, chords, cutset and circuit equations (stage 2).
 
 With branches b and chords c, through variables Y and across variables X:
 
     fundamental cutset equations    [U A] [Y_b; Y_c] = 0
     fundamental circuit equations   [B U] [X_b; X_c] = 0        B = -A^T
 
-The cutset matrix is found by cutting branches, the circuit matrix by closing chords: two routes, and
-construction fails unless they agree.
+[Boiadzhiev and Lilov 1993]. The cutset matrix is found by cutting branches, the circuit matrix by closing
+chords. These are two independent constructions, and a `Topology` that does not satisfy B = -A^T is refused.
 """
 
 from __future__ import annotations
@@ -24,10 +24,12 @@ if TYPE_CHECKING:
 
 
 class Step(NamedTuple):
-    """One step of a walk from the roots to the leaves: across `edge` from `near` to `far`.
+    """One step of a walk from the roots to the leaves of a forest, across `edge` from vertex `near` to `far`.
 
     Attributes:
-        forward: whether the walk goes with the edge's orientation.
+        edge: the branch that is crossed.
+        near, far: its ends; `near` is the one nearer to the root.
+        forward: whether the step goes from the tail of the edge to its head.
     """
 
     edge: Edge
@@ -41,12 +43,14 @@ class Topology(Displayed):
     """A projection of the system graph with a forest chosen in it.
 
     Attributes:
-        walk: the branches in an order from the roots outward.
-        branches, chords: edges in declared order.
+        projection: the graph.
+        walk: one step for each branch, from the roots outward, so that `near` is reached before `far`.
+        branches, chords: the edges in the forest and the others, each in declared order.
         roots: one vertex of each connected part.
 
     Raises:
-        AssertionError: the counts, B = -A^T, or the orthogonality of the matrices fail: a bug.
+        AssertionError: the numbers of branches and chords, B = -A^T, or the orthogonality of circuits and
+            vertices are wrong, which can only be a bug.
     """
 
     projection: Projection
@@ -56,7 +60,7 @@ class Topology(Displayed):
     roots: tuple[str, ...]
 
     def __post_init__(self) -> None:
-        """Hold the identities of graph theory."""
+        """Check the identities of graph theory: v - n branches, e - v + n chords, B = -A^T, orthogonality."""
         vertices, edges = len(self.projection.vertices), len(self.projection.edges)
         parts = len(self.roots)
         if len(self.branches) != vertices - parts or len(self.chords) != edges - vertices + parts:
@@ -68,9 +72,9 @@ class Topology(Displayed):
 
     @cached_property
     def cutset(self) -> IntegerMatrix:
-        """A of [U A]: branches x chords, +1 where a chord crosses the cut as the branch does.
+        """A of [U A], branches x chords: +1 where a chord crosses the cut as the branch does, -1 against it.
 
-        Cutting a branch separates the vertices beyond it from the rest.
+        Cutting a branch separates the vertices beyond it from the rest. Y_b = -A Y_c.
         """
         beyond = self._beyond()
         column = {edge.name: j for j, edge in enumerate(self.chords)}
@@ -95,7 +99,10 @@ class Topology(Displayed):
 
     @cached_property
     def circuit(self) -> IntegerMatrix:
-        """B of [B U]: chords x branches, +1 where the circuit closed by the chord runs with the branch."""
+        """B of [B U], chords x branches: +1 where a branch points along the chord's circuit, -1 against it.
+
+        The circuit is run through in the sense of its chord. X_c = -B X_b.
+        """
         row_of = {edge.name: j for j, edge in enumerate(self.branches)}
         inward = {step.far: step for step in self.walk}
         rows = []
@@ -117,7 +124,7 @@ class Topology(Displayed):
         )
 
     def __repr__(self) -> str:
-        """Its size."""
+        """The domain with the numbers of branches and chords."""
         domain = self.projection.domain
         return f"<tree in {domain}: {len(self.branches)} branches, {len(self.chords)} chords>"
 
@@ -133,7 +140,7 @@ class Topology(Displayed):
         return IntegerMatrix(self.circuit.rows, tuple(column), tuple(rows))
 
     def _beyond(self) -> dict[str, list[str]]:
-        """For each vertex the vertices that are reached through it, itself included."""
+        """For each vertex the vertices that are separated from the root if it is removed, itself included."""
         beyond = {vertex: [vertex] for vertex in self.projection.vertices}
         for step in reversed(self.walk):
             beyond[step.near] += beyond[step.far]
@@ -146,16 +153,22 @@ def choose_forest(
     roots: Iterable[str] = (),
     branches: Iterable[str] = (),
 ) -> Topology:
-    """Choose the forest of least weight (Kruskal); ties go to the edge declared first.
+    """Choose the forest of least total weight; of equal weights the edge declared first is taken.
+
+    Edges are tried in order of their weights and taken if they close no circuit [Kruskal 1956].
 
     Args:
         projection: the graph.
-        weights: by edge name; an edge not named weighs nothing.
-        roots: vertices the walk starts from where their part of the graph has one; elsewhere the first.
-        branches: edges that must be branches.
+        weights: by edge name; an edge that is not named has weight 0.
+        roots: vertices at which the walk starts, each in its connected part; a part without any of them
+            starts at its first declared vertex.
+        branches: names of edges that must be branches, whatever their weight.
+
+    Returns:
+        The forest, with its walk depth first from the roots.
 
     Raises:
-        ModelError: the wanted `branches` close a circuit or are not edges.
+        ModelError: the requested `branches` close a circuit or are not edges of the graph.
 
     Example:
         >>> from linegraph.graph.multigraph import unite
@@ -224,7 +237,7 @@ def _walked(projection: Projection, chosen: set[str], roots: tuple[str, ...]) ->
 
 
 def _steps(touching: Mapping[str, list[Edge]], vertex: str) -> list[Step]:
-    """The steps that leave a vertex, last declared first: a stack takes them in declared order."""
+    """The steps that leave a vertex, the last declared first, since a stack returns them in reverse."""
     return [
         Step(edge, vertex, edge.head, True)
         if edge.tail == vertex

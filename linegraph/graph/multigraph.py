@@ -1,7 +1,7 @@
-"""Stage 1: the system graph, the union of the components' terminal graphs. No word of physics in it.
+"""The system graph, which merges the terminal graphs of all components; no physics (stage 1).
 
-What was said, nothing chosen: vertices and oriented edges, one projection per domain. Parallel edges and
-several connected parts are ordinary.
+It holds vertices and oriented edges as declared, in one projection for each domain. Parallel edges and
+several connected parts are allowed.
 """
 
 from __future__ import annotations
@@ -18,7 +18,16 @@ if TYPE_CHECKING:
 
 
 class Edge(NamedTuple):
-    """An oriented edge of a component's terminal graph in one domain, from `tail` to `head`."""
+    """An oriented edge of a component's terminal graph in one domain.
+
+    The orientation fixes the signs of the edge's through and across variables in the laws of the component.
+
+    Attributes:
+        name: unique within its domain.
+        component: the component to which it belongs.
+        domain: the power subspace, as ``"translation"`` or ``"electrical"``.
+        tail, head: names of the vertices that it joins.
+    """
 
     name: str
     component: str
@@ -32,7 +41,8 @@ class IntegerMatrix:
     """A matrix of exact integers with named rows and columns, stored by its non-zero entries.
 
     Attributes:
-        entries: for each row, {column: value}.
+        rows, columns: names of edges or vertices, in order.
+        entries: for each row {column number: value}, without zeros.
     """
 
     rows: tuple[str, ...]
@@ -41,7 +51,7 @@ class IntegerMatrix:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Rows and columns."""
+        """The numbers of rows and columns."""
         return len(self.rows), len(self.columns)
 
     def __getitem__(self, place: tuple[int, int]) -> int:
@@ -53,7 +63,7 @@ class IntegerMatrix:
 
     @property
     def transposed(self) -> IntegerMatrix:
-        """Rows and columns exchanged."""
+        """The transposed matrix, names included."""
         entries: tuple[dict[int, int], ...] = tuple({} for _ in self.columns)
         for i, row in enumerate(self.entries):
             for j, value in row.items():
@@ -75,23 +85,23 @@ class IntegerMatrix:
         return IntegerMatrix(self.rows, other.columns, tuple(entries))
 
     def to_sympy(self) -> Any:
-        """The dense matrix as sympy's."""
+        """The dense matrix as a SymPy matrix of integers, without the names."""
         from sympy import Matrix
 
         return Matrix(*self.shape, [value for row in self for value in row])
 
     def to_numpy(self) -> Any:
-        """The dense matrix as an integer array."""
+        """The dense matrix as a NumPy array of integers, of shape (rows, columns)."""
         from numpy import array
 
         return array(list(self), dtype=int).reshape(self.shape)
 
     def __repr__(self) -> str:
-        """Its size."""
+        """The size, and how to see the entries."""
         return f"<{self.shape[0]} x {self.shape[1]} matrix of integers; print it, or to_sympy()>"
 
     def _repr_html_(self) -> str:
-        """The table a notebook shows, with names along both sides."""
+        """The table that a notebook shows, with names along both sides."""
         from html import escape
 
         def row(cells: Iterable[object], tag: str) -> str:
@@ -119,10 +129,11 @@ class IntegerMatrix:
 
 @dataclass(frozen=True, repr=False)
 class Projection(Displayed):
-    """The system graph seen in one domain.
+    """The system graph in one domain.
 
     Attributes:
-        vertices, edges: in the order in which they were declared.
+        domain: name of the power subspace.
+        vertices, edges: in declared order.
     """
 
     domain: str
@@ -131,7 +142,10 @@ class Projection(Displayed):
 
     @cached_property
     def incidence(self) -> IntegerMatrix:
-        """Vertices x edges: +1 where the edge leaves the vertex, -1 where it enters."""
+        """The incidence matrix, vertices x edges: +1 where the edge leaves the vertex, -1 where it enters.
+
+        An edge from a vertex to itself has a column of zeros, so that it closes a circuit of its own.
+        """
         place = {vertex: i for i, vertex in enumerate(self.vertices)}
         entries: tuple[dict[int, int], ...] = tuple({} for _ in self.vertices)
         for j, edge in enumerate(self.edges):
@@ -141,7 +155,7 @@ class Projection(Displayed):
         return IntegerMatrix(self.vertices, tuple(edge.name for edge in self.edges), entries)
 
     def to_networkx(self) -> Any:
-        """A `networkx.MultiDiGraph` with the edges keyed by name."""
+        """The graph as a `networkx.MultiDiGraph` whose edges are keyed by name."""
         from networkx import MultiDiGraph
 
         graph = MultiDiGraph(domain=self.domain)
@@ -151,13 +165,16 @@ class Projection(Displayed):
         return graph
 
     def __repr__(self) -> str:
-        """Its size."""
+        """The domain with the numbers of vertices and edges."""
         return f"<{self.domain}: {len(self.vertices)} vertices, {len(self.edges)} edges>"
 
 
 @dataclass(frozen=True, repr=False)
 class SystemGraph(Displayed):
-    """The united terminal graph: its projections on the domains, in the order these first appear."""
+    """The terminal graphs merged: one projection for each domain, in the order in which these first appear.
+
+    ``graph["translation"]`` is the projection on a domain; a domain that does not occur is a KeyError.
+    """
 
     projections: tuple[Projection, ...]
 
@@ -169,16 +186,22 @@ class SystemGraph(Displayed):
 
     @property
     def domains(self) -> tuple[str, ...]:
-        """The names of the domains present."""
+        """The names of the domains that occur, in the order of the projections."""
         return tuple(projection.domain for projection in self.projections)
 
     def __repr__(self) -> str:
-        """Its subspaces."""
+        """The names of the domains."""
         return f"<system graph in {', '.join(self.domains)}>"
 
 
 def unite(terminal_graphs: Iterable[Iterable[Edge]]) -> SystemGraph:
-    """Unite terminal graphs by merging vertices of one name within each domain.
+    """Merge vertices of the same name within each domain; the terminal graphs become the system graph.
+
+    Args:
+        terminal_graphs: for each component its edges.
+
+    Returns:
+        The system graph, its domains, vertices and edges in the order in which they first appear.
 
     Raises:
         ModelError: two edges of one domain have the same name.

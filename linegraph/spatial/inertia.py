@@ -1,4 +1,4 @@
-"""Mass distributions: mass, first and second moments about a point, and how they are carried along."""
+"""Mass distributions: mass, first and second moments about a point, and how they transform between frames."""
 
 from __future__ import annotations
 
@@ -22,13 +22,15 @@ if TYPE_CHECKING:
 class Moments(NamedTuple):
     """The mass distribution of a body about an origin, in its axes: m, ∫ r dm and ∫ r r^T dm.
 
-    The second moments S are carried from frame to frame with fewer operations than the inertia tensor
-    J = tr(S) 1 - S, and what an acceleration field does to a body is linear in them.
+    The second moments S take fewer operations to transform than the inertia tensor J = tr(S) 1 - S, and the
+    resultants of an acceleration field on the body are linear in them.
 
     Attributes:
-        mass, first, second: m, ∫ r dm and ∫ r r^T dm.
-        about: the diagonal of J as far as it is known without the sums of S, of which small ones would not be
-            left to the last digit, and zeros not be zero.
+        mass: m (kg).
+        first: ∫ r dm (kg m).
+        second: S = ∫ r r^T dm (kg m²).
+        about: those diagonal entries of J that are known by themselves. As sums of entries of S, small ones
+            would not be exact to the last digit, and zeros would not be zero.
     """
 
     mass: Scalar
@@ -38,7 +40,7 @@ class Moments(NamedTuple):
 
     @property
     def inertia(self) -> Inertia:
-        """J about the origin."""
+        """The inertia tensor J = tr(S) 1 - S about the origin (kg m²), with J_xy = -∫ x y dm."""
         xx, xy, xz, yy, yz, zz = self.second
         sums = (yy + zz, xx + zz, xx + yy)
         x, y, z = (s if known is None else known for s, known in zip(sums, self.about, strict=True))
@@ -49,9 +51,14 @@ NO_MOMENTS = Moments(0, ZERO, (0, 0, 0, 0, 0, 0), (0, 0, 0))
 
 
 def second_moments(inertia: Inertia) -> Inertia:
-    """``S = tr(J) / 2 - J``, of numbers to the last digit, however slender the body.
+    """``S = tr(J) / 2 - J``, exact to the last digit for numbers, however slender the body is.
 
-    Of a planar body, whose J has no more than zz, S is what gives that zz.
+    Args:
+        inertia: J about any point (kg m²). For a planar body, where only zz is given, S is what results in
+            that zz.
+
+    Returns:
+        S about the same point, in the same axes (kg m²).
     """
     xx, xy, xz, yy, yz, zz = inertia
     x, y, z = _less(yy, zz, xx), _less(zz, xx, yy), _less(xx, yy, zz)
@@ -59,7 +66,7 @@ def second_moments(inertia: Inertia) -> Inertia:
 
 
 def _less(a: Scalar, b: Scalar, c: Scalar) -> Scalar:
-    """``a + b - c``, from which two that are the same are left out: they would take digits of the third."""
+    """``a + b - c``, without the two that are the same, which would take digits of the third."""
     if all(isinstance(x, (int, float)) for x in (a, b, c)):
         return math.fsum((a, b, -c))
     if c in (a, b):
@@ -68,22 +75,44 @@ def _less(a: Scalar, b: Scalar, c: Scalar) -> Scalar:
 
 
 def point_apart(head: Moments) -> tuple[Moments, Moments]:
-    """The mass as a point at the origin, handed over: for joints whose frames have their origin in common."""
+    """The body split into one without mass and its mass as a point at the origin.
+
+    For joints whose two frames have a common origin: the point moves with the parent, too, and may as well
+    belong to it, which leaves fewer parameters in the equations of motion.
+
+    Returns:
+        The remaining moments, and those of the point.
+    """
     return head._replace(mass=0), NO_MOMENTS._replace(mass=head.mass)
 
 
 def round_apart(head: Moments) -> tuple[Moments, Moments]:
-    """The spread along z, handed over: for joints whose frames have the direction of z in common."""
+    """The body split into one with S_zz = 0 and its extent along z.
+
+    For joints whose two frames have a common direction of z: the extent has no inertia about z and the frames
+    turn alike across z, so that it may as well belong to the parent.
+
+    Returns:
+        The remaining moments, and those with nothing but S_zz.
+    """
     *others, zz = head.second
     kept = Moments(head.mass, head.first, (*others, 0), (None, None, head.about[2]))
     return kept, Moments(0, ZERO, (0, 0, 0, 0, 0, zz))
 
 
 def carried(moments: Moments, rotation: Rotation, at: Vector) -> Moments:
-    """Moments about an inner origin, resolved about an outer one and in outer axes.
+    """Moments about another origin and in other axes.
 
-    With b the rotated first moment and f = b + m at the one about the outer origin, the second moments gain
-    at b^T + f at^T.
+    With b the rotated first moment and f = b + m at that about the outer origin, the second moments gain
+    at b^T + f at^T. This contains Steiner's term m at at^T, so that the mass centre is not needed.
+
+    Args:
+        moments: about the inner origin, in inner axes.
+        rotation: inner to outer components.
+        at: the inner origin from the outer one, in outer axes (m).
+
+    Returns:
+        Moments about the outer origin, in outer axes.
     """
     m = moments.mass
     b = rotation.out(moments.first)
@@ -115,7 +144,19 @@ def _about(moments: Moments, rotation: Rotation, at: Vector, twice: Vector) -> D
 
 
 def carried_in_plane(moments: Moments, rotation: Rotation, at: Vector) -> Moments:
-    """The same where only the inertia about z counts, on both sides: ``J + 2 at . b + m at . at``."""
+    """The same as `carried` for a planar motion, of which only the inertia about z counts.
+
+        J_zz + 2 at . b + m at . at        with b the rotated first moment, products over x and y
+
+    Args:
+        moments: about the inner origin.
+        rotation: inner to outer components, about z.
+        at: the inner origin from the outer one, in outer axes (m).
+
+    Returns:
+        Moments about the outer origin, which hold J_zz both as `second[0]` and as `about[2]`, and no other
+        second moment.
+    """
     b = rotation.out(moments.first)
     first = vector.add(b, vector.scale(moments.mass, at))
     about = moments.inertia[5]
@@ -126,13 +167,18 @@ def carried_in_plane(moments: Moments, rotation: Rotation, at: Vector) -> Moment
 
 
 def _spread(at: Scalar, inner: Scalar, outer: Scalar) -> Scalar:
-    """``at (inner + outer)``; without mass the two are one, whose product with an arm M needs, too."""
+    """``at (inner + outer)``; without mass both are the same node, and its product is shared with M."""
     shared = inner is outer and not isinstance(at, (int, float))
     return 2 * (at * inner) if shared else at * (inner + outer)
 
 
 def joined(a: Moments, b: Moments) -> Moments:
-    """The moments of two bodies together, about one origin and in one frame."""
+    """The moments of two bodies together.
+
+    Args:
+        a: of one body.
+        b: of the other, about the same origin and in the same axes.
+    """
     second = tuple(x + y for x, y in zip(a.second, b.second, strict=True))
     known = zip(a.about, b.about, strict=True)
     x, y, z = (None if j is None or k is None else j + k for j, k in known)

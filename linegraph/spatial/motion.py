@@ -1,4 +1,4 @@
-"""Relative motion of two frames that a joint connects."""
+"""The relative motion of two frames that a joint connects."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Motion(NamedTuple):
         rotation: head components to tail components.
         displacement: origin of the head frame from that of the tail frame, in tail axes (m).
         angular, linear: one 3-vector for each velocity coordinate, in head axes.
-        angular_bias, linear_bias: what remains of the derivatives with v̇ = 0, in head axes.
+        angular_bias, linear_bias: the derivatives at v̇ = 0, in head axes.
     """
 
     rotation: Rotation
@@ -34,7 +34,17 @@ class Motion(NamedTuple):
 
 
 def reverse(motion: Motion) -> Motion:
-    """The motion of the tail as seen from the head: the joint crossed against its orientation."""
+    """The motion of the tail relative to the head, for a joint whose edge points towards the root.
+
+    With d from the head's origin to the tail's, the tail's origin moves at -(u + w x d) relative to the head.
+    The biases transform in the same way: in the derivative as seen from the tail, two terms w x u cancel.
+
+    Args:
+        motion: head relative to tail, in head axes.
+
+    Returns:
+        Tail relative to head, in tail axes.
+    """
     r = motion.rotation
     at = vector.negate(r.into(motion.displacement))
 

@@ -1,8 +1,8 @@
-"""Rotations as products of cheap factors, applied to vectors and symmetric tensors.
+"""Rotations as products of cheap factors, applied to vectors and to symmetric tensors.
 
-A `Rotation` R takes components in an inner frame to components in an outer one. Kept as a product, a
-planar factor costs 4 multiplications a vector and 8 a symmetric tensor, where a full matrix costs 9 and
-45; a signed permutation of axes costs nothing.
+A `Rotation` R maps components in an inner frame to components in an outer frame. Kept as a product, a
+planar factor costs 4 multiplications for a vector and 8 for a symmetric tensor, where a full matrix costs 9
+and 45; a signed permutation of axes costs nothing.
 """
 
 from __future__ import annotations
@@ -26,34 +26,34 @@ _PLACE = ((0, 1, 2), (1, 3, 4), (2, 4, 5))
 
 
 class Factor(Protocol):
-    """One rotation that knows its cheapest application."""
+    """A rotation R from inner to outer axes that knows its cheapest application."""
 
     def out(self, a: Vector) -> Vector:
-        """``R a``: inner components to outer."""
+        """``R a``: components of a vector in outer axes from those in inner axes."""
 
     def into(self, a: Vector) -> Vector:
-        """``R^T a``: outer components to inner."""
+        """``R^T a``: components of a vector in inner axes from those in outer axes."""
 
     def congruence(self, j: Inertia) -> Inertia:
-        """``R J R^T``: a symmetric tensor from inner to outer components."""
+        """``R J R^T``: a symmetric tensor in outer axes from the same in inner axes."""
 
     def similarity(self, m: Matrix) -> Matrix:
-        """``R M R^T``: any tensor from inner to outer components."""
+        """``R M R^T``: any tensor in outer axes from the same in inner axes."""
 
     def inverse(self) -> Factor:
-        """``R^T`` as a factor."""
+        """The inverse rotation ``R^T`` as a factor."""
 
 
 @dataclass(frozen=True)
 class Turn:
-    """Rotation about coordinate axis `axis` (0, 1, 2) by the angle with this cosine and sine."""
+    """Right-handed rotation of the inner frame about coordinate axis `axis` (0, 1, 2), by cosine and sine."""
 
     axis: int
     cosine: Scalar
     sine: Scalar
 
     def out(self, a: Vector) -> Vector:
-        """``R a``."""
+        """``R a``, with 4 multiplications."""
         i, j = (self.axis + 1) % 3, (self.axis + 2) % 3
         c, s = self.cosine, self.sine
         turned = list(a)
@@ -62,7 +62,7 @@ class Turn:
         return (turned[0], turned[1], turned[2])
 
     def into(self, a: Vector) -> Vector:
-        """``R^T a``."""
+        """``R^T a``, with 4 multiplications."""
         i, j = (self.axis + 1) % 3, (self.axis + 2) % 3
         c, s = self.cosine, self.sine
         turned = list(a)
@@ -71,7 +71,7 @@ class Turn:
         return (turned[0], turned[1], turned[2])
 
     def congruence(self, j: Inertia) -> Inertia:
-        """``R J R^T`` by the double-angle form that needs neither c^2 nor s^2."""
+        """``R J R^T``, 8 multiplications: s (J_ii - J_jj) + 2 c J_ij takes the place of c² and s²."""
         k, i1, i2 = self.axis, (self.axis + 1) % 3, (self.axis + 2) % 3
         c, s = self.cosine, self.sine
         ii, jj, ij = _PLACE[i1][i1], _PLACE[i2][i2], _PLACE[i1][i2]
@@ -87,7 +87,7 @@ class Turn:
         return tuple(turned)
 
     def similarity(self, m: Matrix) -> Matrix:
-        """``R M R^T``; what is skew in the plane of the turn stays, as half the trace does."""
+        """``R M R^T``; in the plane of the turn the skew part of M and its trace are invariant."""
         k, i, j = self.axis, (self.axis + 1) % 3, (self.axis + 2) % 3
         c, s = self.cosine, self.sine
         twist = s * (m[i][i] - m[j][j]) + c * (m[i][j] + m[j][i])
@@ -103,28 +103,28 @@ class Turn:
         return (x, y, z)
 
     def inverse(self) -> Turn:
-        """The turn by the opposite angle."""
+        """Rotation about the same axis by the opposite angle."""
         return Turn(self.axis, self.cosine, -self.sine)
 
 
 @dataclass(frozen=True)
 class Relabel:
-    """A signed permutation of axes: outer component r is ``signs[r] * inner[source[r]]``."""
+    """A signed permutation of axes: outer component r is ``signs[r] * inner[source[r]]``, signs ±1."""
 
     source: tuple[int, int, int]
     signs: tuple[int, int, int]
 
     def out(self, a: Vector) -> Vector:
-        """``R a``."""
+        """``R a``: entries exchange places and signs."""
         (i, j, k), (x, y, z) = self.source, self.signs
         return (x * a[i], y * a[j], z * a[k])
 
     def into(self, a: Vector) -> Vector:
-        """``R^T a``."""
+        """``R^T a``: entries exchange places and signs."""
         return self.inverse().out(a)
 
     def congruence(self, j: Inertia) -> Inertia:
-        """``R J R^T``."""
+        """``R J R^T``: entries exchange places and signs."""
 
         def entry(r: int, c: int) -> Scalar:
             return self.signs[r] * self.signs[c] * j[_PLACE[self.source[r]][self.source[c]]]
@@ -132,7 +132,7 @@ class Relabel:
         return (entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2))
 
     def similarity(self, m: Matrix) -> Matrix:
-        """``R M R^T``."""
+        """``R M R^T``: entries exchange places and signs."""
         x, y, z = (
             tuple(
                 self.signs[r] * self.signs[c] * m[self.source[r]][self.source[c]] for c in range(3)
@@ -142,7 +142,7 @@ class Relabel:
         return (x, y, z)
 
     def inverse(self) -> Relabel:
-        """The permutation back."""
+        """The permutation from outer to inner axes."""
         back = [0, 0, 0]
         signs = [1, 1, 1]
         for row in range(3):
@@ -153,20 +153,20 @@ class Relabel:
 
 @dataclass(frozen=True)
 class Full:
-    """A rotation matrix without structure."""
+    """A rotation matrix without structure, by rows."""
 
     rows: Matrix
 
     def out(self, a: Vector) -> Vector:
-        """``R a``."""
+        """``R a``, with 9 multiplications."""
         return times(self.rows, a)
 
     def into(self, a: Vector) -> Vector:
-        """``R^T a``."""
+        """``R^T a``, with 9 multiplications."""
         return times(transpose(self.rows), a)
 
     def congruence(self, j: Inertia) -> Inertia:
-        """``R J R^T``."""
+        """``R J R^T`` of a symmetric tensor, with 45 multiplications."""
         xx, xy, xz, yy, yz, zz = j
         x, y, z = (times(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)), row) for row in self.rows)
         p, r, s = self.rows
@@ -180,48 +180,55 @@ class Full:
         )
 
     def similarity(self, m: Matrix) -> Matrix:
-        """``R M R^T``."""
+        """``R M R^T`` of any tensor, with 54 multiplications."""
         x, y, z = (self.out(column) for column in transpose(m))
         p, r, s = (self.out(row) for row in transpose((x, y, z)))
         return (p, r, s)
 
     def inverse(self) -> Full:
-        """The transposed matrix."""
+        """The rotation with the transposed matrix."""
         return Full(transpose(self.rows))
 
 
 @dataclass(frozen=True)
 class Rotation:
-    """A product of factors, outermost first; the empty product is the identity."""
+    """A product of factors, outermost first; the empty product is the identity.
+
+    `R1 @ R2` applies R2 first: its inner frame is that of R2, its outer frame that of R1.
+    """
 
     factors: tuple[Factor, ...] = ()
 
     def out(self, a: Vector) -> Vector:
-        """``R a``: inner components to outer."""
+        """``R a``: components of a vector in outer axes from those in inner axes."""
         for factor in reversed(self.factors):
             a = factor.out(a)
         return a
 
     def into(self, a: Vector) -> Vector:
-        """``R^T a``: outer components to inner."""
+        """``R^T a``: components of a vector in inner axes from those in outer axes."""
         for factor in self.factors:
             a = factor.into(a)
         return a
 
     def congruence(self, j: Inertia) -> Inertia:
-        """``R J R^T``: a symmetric tensor from inner to outer components."""
+        """``R J R^T``: a symmetric tensor in outer axes from the same in inner axes."""
         for factor in reversed(self.factors):
             j = factor.congruence(j)
         return j
 
     def similarity(self, m: Matrix) -> Matrix:
-        """``R M R^T``: any tensor from inner to outer components."""
+        """``R M R^T``: any tensor in outer axes from the same in inner axes."""
         for factor in reversed(self.factors):
             m = factor.similarity(m)
         return m
 
     def diagonal(self, known: Diagonal) -> Diagonal:
-        """Of a tensor's diagonal the entries that are known in outer axes when some are in inner ones."""
+        """Which diagonal entries of a tensor are known in outer axes if only some are known in inner axes.
+
+        A signed permutation keeps all of them, a turn that of its axis; others would need products of
+        inertia.
+        """
         for factor in reversed(self.factors):
             if isinstance(factor, Relabel):
                 i, j, k = factor.source
@@ -233,20 +240,20 @@ class Rotation:
         return known
 
     def inverse(self) -> Rotation:
-        """``R^T``."""
+        """``R^T``: the outer frame's axes take the place of the inner frame's."""
         return Rotation(tuple(factor.inverse() for factor in reversed(self.factors)))
 
     def __matmul__(self, inner: Rotation) -> Rotation:
         return Rotation(self.factors + inner.factors)
 
     def matrix(self) -> Matrix:
-        """The 3 x 3 matrix of the product."""
+        """The 3 x 3 matrix of the product, by rows; its columns are the inner axes in outer components."""
         x, y, z = (self.out(axis) for axis in IDENTITY_MATRIX)
         return transpose((x, y, z))
 
 
 def rotation_of(m: Matrix) -> Rotation:
-    """The cheapest product of factors for a constant matrix: nothing, a relabelling, a turn, or all."""
+    """A constant rotation matrix by its cheapest factor: none, `Relabel`, `Turn` or `Full`; compared exactly."""
     if m == IDENTITY_MATRIX:
         return Rotation()
     if all(x in (0, 1, -1) for row in m for x in row):
@@ -268,10 +275,14 @@ _EXACT = (0, 1, -1, 0.5, -0.5, *_ROOTS, *(-x for x in _ROOTS))
 
 
 def snapped(m: Matrix, within: float) -> Matrix:
-    """Numbers closer than `within` to 0, 1, -1, 1/2 or -1/2 replaced by these exactly.
+    """A rotation matrix with numbers near 0, ±1 and ±1/2 replaced by these exactly.
 
-    So are their partners in a turn by 45, 30 or 60 degrees, or the matrix would lose its orthogonality. Where
-    it would all the same, because a number is near and its partner is not, nothing is replaced.
+    So are their partners sqrt(1/2) and sqrt(3/4) in turns by 45, 30 and 60 degrees, or the matrix would lose
+    its orthogonality. Where it would all the same, since the partner is not near, it is returned unchanged.
+
+    Args:
+        m: 3 x 3, by rows; symbolic entries stay as they are.
+        within: the largest distance at which a number is replaced.
     """
 
     def snap(x: Scalar) -> Scalar:
@@ -289,7 +300,7 @@ def snapped(m: Matrix, within: float) -> Matrix:
 
 
 def deviation(m: Matrix) -> float:
-    """How far the rows of a matrix of numbers are from orthonormal ones."""
+    """The largest absolute entry of ``M M^T - 1`` of a matrix of numbers: its distance from a rotation."""
     products = (
         abs(sum(a * b for a, b in zip(p, q, strict=True)) - (i == j))
         for i, p in enumerate(m)
@@ -299,20 +310,31 @@ def deviation(m: Matrix) -> float:
 
 
 def square(j: Inertia) -> Matrix:
-    """A symmetric tensor as a matrix."""
+    """A symmetric tensor (xx, xy, xz, yy, yz, zz) as a 3 x 3 matrix."""
     xx, xy, xz, yy, yz, zz = j
     return ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
 
 
 def product(a: Matrix, b: Matrix) -> Matrix:
-    """``A B``."""
+    """The matrix product ``A B``.
+
+    Args:
+        a: A, 3 x 3 by rows.
+        b: B, 3 x 3 by rows.
+    """
     columns = transpose(b)
     x, y, z = (times(a, column) for column in columns)
     return transpose((x, y, z))
 
 
 def from_rpy(roll: Scalar, pitch: Scalar, yaw: Scalar) -> Matrix:
-    """``Rz(yaw) Ry(pitch) Rx(roll)``: turns about fixed x, y, z in this order, in radians."""
+    """The matrix ``Rz(yaw) Ry(pitch) Rx(roll)``, inner to outer components, as in URDF.
+
+    Args:
+        roll: first angle, about the fixed outer x axis (rad).
+        pitch: second angle, about the fixed outer y axis (rad).
+        yaw: third angle, about the fixed outer z axis (rad).
+    """
     (cr, sr), (cp, sp), (cy, sy) = (_cos_sin(angle) for angle in (roll, pitch, yaw))
     return (
         (cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
@@ -322,7 +344,12 @@ def from_rpy(roll: Scalar, pitch: Scalar, yaw: Scalar) -> Matrix:
 
 
 def about(axis: Vector, angle: Scalar) -> Matrix:
-    """Rotation by `angle` (rad) about a unit vector: Rodrigues' formula."""
+    """The rotation matrix about a unit vector n, by Rodrigues' formula c 1 + s [n x] + (1 - c) n n^T.
+
+    Args:
+        axis: n, of length 1; its components are the same in inner and outer axes.
+        angle: in rad, right-handed about n; a number, a parameter or a SymPy expression.
+    """
     c, s = _cos_sin(angle)
     x, y, z = axis
     k = 1 - c
@@ -353,7 +380,14 @@ def z_onto(axis: Vector) -> Matrix:
 
 
 def from_quaternion(x: Scalar, y: Scalar, z: Scalar, w: Scalar) -> Matrix:
-    """The rotation of a unit quaternion (x, y, z, w): inner to outer components."""
+    """The rotation matrix of a unit quaternion w + x i + y j + z k, inner to outer components.
+
+    Args:
+        x: coefficient of i.
+        y: coefficient of j.
+        z: coefficient of k.
+        w: the scalar part.
+    """
     x2, y2, z2 = x + x, y + y, z + z
     xx, yy, zz = x * x2, y * y2, z * z2
     xy, xz, yz = x * y2, x * z2, y * z2

@@ -1,4 +1,8 @@
-"""3-vectors over any algebra: plain triples of scalars, resolved in a frame the caller knows."""
+"""3-vectors and 3 x 3 matrices over any algebra: plain tuples of scalars.
+
+A vector does not know its frame. All operands of a function must be resolved in the same axes, in which the
+result is resolved, too.
+"""
 
 from __future__ import annotations
 
@@ -13,32 +17,57 @@ ZERO: Vector = (0, 0, 0)
 
 
 def add(a: Vector, b: Vector) -> Vector:
-    """``a + b``."""
+    """The sum ``a + b``.
+
+    Args:
+        a: a vector.
+        b: another in the same axes.
+    """
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
 def subtract(a: Vector, b: Vector) -> Vector:
-    """``a - b``."""
+    """The difference ``a - b``.
+
+    Args:
+        a: a vector.
+        b: another in the same axes.
+    """
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
 def negate(a: Vector) -> Vector:
-    """``-a``."""
+    """The opposite vector, ``-a``."""
     return (-a[0], -a[1], -a[2])
 
 
 def scale(s: Scalar, a: Vector) -> Vector:
-    """``s a``."""
+    """The multiple ``s a`` of a vector.
+
+    Args:
+        s: a scalar.
+        a: the vector.
+    """
     return (s * a[0], s * a[1], s * a[2])
 
 
 def dot(a: Vector, b: Vector) -> Scalar:
-    """``a . b``."""
+    """The scalar product ``a . b``.
+
+    Args:
+        a: a vector.
+        b: another in the same axes.
+    """
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def cross(a: Vector, b: Vector) -> Vector:
-    """``a x b``."""
+    """The vector product ``a x b``, right-handed.
+
+    Args:
+        a: a vector.
+        b: another in the same axes.
+    """
     return (
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
@@ -47,13 +76,21 @@ def cross(a: Vector, b: Vector) -> Vector:
 
 
 def skew(a: Vector) -> Matrix:
-    """``[a x]``: the matrix whose product with b is a x b."""
+    """The cross-product matrix ``[a x]``, with ``[a x] b = a x b``."""
     x, y, z = a
     return ((0, -z, y), (z, 0, -x), (-y, x, 0))
 
 
 def combine(coefficients: tuple[Scalar, ...], vectors: tuple[Vector, ...]) -> Vector:
-    """``sum_i c_i a_i``."""
+    """The linear combination ``sum_i c_i a_i``; zero if there are no terms.
+
+    Args:
+        coefficients: the scalars c_i.
+        vectors: as many vectors a_i, in the same axes.
+
+    Raises:
+        ValueError: the numbers of coefficients and vectors differ.
+    """
     total = ZERO
     for c, a in zip(coefficients, vectors, strict=True):
         total = add(total, scale(c, a))
@@ -61,7 +98,12 @@ def combine(coefficients: tuple[Scalar, ...], vectors: tuple[Vector, ...]) -> Ve
 
 
 def times(m: Matrix, a: Vector) -> Vector:
-    """``M a``."""
+    """The product ``M a`` of a matrix and a vector.
+
+    Args:
+        m: 3 x 3, by rows.
+        a: the vector.
+    """
     return (dot(m[0], a), dot(m[1], a), dot(m[2], a))
 
 
@@ -75,5 +117,5 @@ def transpose(m: Matrix) -> Matrix:
 
 
 def is_zero(a: Vector) -> bool:
-    """Whether the vector is known to be zero; a symbolic entry never is."""
+    """Whether all entries are the number zero. A symbolic entry never is, whatever its value."""
     return bool(a[0] == 0 and a[1] == 0 and a[2] == 0)
