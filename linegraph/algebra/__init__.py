@@ -1,4 +1,4 @@
-"""What derivations are written over.
+"""The algebras over which derivations run.
 
 The protocol `Algebra` (`protocol`) and its instances: floats, the expression DAG, SymPy expressions
 (`sympy_scalars`), jets with two time derivatives (`jets`) and sampled values (`sampled`). On the DAG:

@@ -1,8 +1,9 @@
-"""Antiderivatives of a scalar of a DAG with respect to one symbol, by exact rules; or none.
+"""Antiderivatives of a scalar of a DAG with respect to one symbol, by exact rules.
 
-What is integrated: sums; polynomials and their quotients by a power; what is homogeneous in one linear
-argument L, such as ``L |L|``, ``sign(L) sqrt(|L|)`` and ``max(L, 0)^1.5``; max, min and limits of linear
-ones; the elementary functions of a linear argument; and ``u' g(u)``. Everything else is left to the user.
+Integrated are: sums; polynomials and their quotients by a power; functions that are homogeneous in one linear
+argument L, such as ``L |L|``, ``sign(L) sqrt(|L|)`` and ``max(L, 0)^1.5``; max and min of linear ones and
+limits of these; the elementary functions of a linear argument; and ``u' g(u)``. Anything else has no
+antiderivative here.
 """
 
 from __future__ import annotations
@@ -30,18 +31,18 @@ Polynomial = dict[int, "Scalar"]
 
 
 class _None(Exception):
-    """There is no rule."""
+    """Raised where no rule applies."""
 
 
 def antiderivative(calculus: Calculus, f: Scalar, by: Symbol) -> Scalar | None:
-    """A scalar whose derivative with respect to a symbol is f; None where no rule gives one.
+    """A scalar F with ∂F/∂s = f for a symbol s; None where no rule gives one.
 
-    It is zero where the symbol is, unless it may be infinite there.
+    F is zero at s = 0, unless it may be infinite there.
 
     Args:
-        calculus: of the DAG that f is of.
+        calculus: derivatives over the DAG of f.
         f: the scalar.
-        by: the symbol.
+        by: the symbol s, as (argument, place).
 
     Example:
         >>> from linegraph.algebra.differentiation import Calculus
@@ -68,7 +69,7 @@ def antiderivative(calculus: Calculus, f: Scalar, by: Symbol) -> Scalar | None:
 
 
 def _has_pole(calculus: Calculus, f: Scalar, by: Symbol) -> bool:
-    """Whether something that varies is divided by, or has its logarithm taken."""
+    """Whether a divisor, or the argument of a logarithm, depends on the symbol."""
     pending = [f]
     seen: set[int] = set()
     while pending:
@@ -113,7 +114,7 @@ class _Rules:
         return isinstance(f, Node) and self._by in self._calculus.support(f)
 
     def _factors(self, f: Scalar) -> tuple[Scalar, list[Node]]:
-        """A constant factor, and those that vary."""
+        """The constant factor of a product, and the factors that vary."""
         constant: Scalar = 1
         varying: list[Node] = []
         pending = [f]
@@ -143,7 +144,7 @@ class _Rules:
         return constant * self._distributed(factors)
 
     def _slope(self, f: Scalar) -> Scalar | None:
-        """The slope of what is linear in the symbol; None of anything else."""
+        """The slope of a scalar that is linear in the symbol; None for any other."""
         slope = self._calculus.derivative(f, self._by)
         return None if self._varies(slope) or not self._residues(slope) else slope
 
@@ -180,7 +181,7 @@ class _Rules:
         return None
 
     def _degree(self, f: Scalar, linear: Node, slope: Scalar) -> Fraction | None:
-        """The degree of what is homogeneous in a linear L."""
+        """The degree of a scalar that is homogeneous in a linear L; None for any other."""
         if not self._varies(f):
             return Fraction(0)
         own = self._slope(f)
@@ -269,9 +270,10 @@ class _Rules:
         return None if over else self._primitive(g.op, u, g)
 
     def _constant_ratio(self, f: Scalar, u: Scalar) -> Scalar | None:
-        """A factor by the slope of u, if that is constant.
+        """The factor between a scalar and the derivative of u, if that is constant.
 
-        A derivative of zero would not do: that of a sign is zero, too, and of the slope of max(u, 0).
+        It is compared at two values of the symbol. A zero derivative of the ratio would not prove it
+        constant: that of a sign is zero, too, and so is that of the slope of max(u, 0).
         """
         if not self._varies(u):
             return None
@@ -326,10 +328,10 @@ class _Rules:
         return self._of_terms(total)
 
     def _terms(self, f: Scalar) -> Polynomial:
-        """A sum of powers of the symbol.
+        """A polynomial in the symbol, with negative powers.
 
         Raises:
-            _None: it is none.
+            _None: it is not one.
         """
         if not self._varies(f):
             return {0: f}

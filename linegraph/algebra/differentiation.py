@@ -1,9 +1,9 @@
-"""Differentiation of the expression DAG, and rewriting it: what is derived from it stays a DAG.
+"""Differentiation of the expression DAG, and substitution in it; the results are nodes of the DAG again.
 
-A *gradient* is sparse: only the symbols that a node depends on have an entry. Functions that have a kink
-(abs, min, max) have the derivative of one side there: abs that of positive numbers, min and max that of
-their first argument, or of the second one where the first is constant. Powers such as x^(3/2) are
-differentiated as powers, whose derivatives are finite where those of the root in them are not.
+A *gradient* is sparse: only the symbols that a node depends on have an entry. Functions with a kink (abs,
+min, max) have the derivative of one side there: abs that of positive numbers, min and max that of their first
+argument, or of the second one where the first is constant. Powers such as x^(3/2) are differentiated as
+powers, whose derivatives are finite where those of the root in them are not.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ SMALLEST = 1e-37
 
 
 class Calculus:
-    """Derivatives and supports of the nodes of one DAG, each found once.
+    """Derivatives and supports of the nodes of one DAG, in forward mode, each found once.
 
     Example:
         >>> dag = Dag()
@@ -50,12 +50,12 @@ class Calculus:
         constants: Collection[str] = (),
         chain: Mapping[Symbol, Gradient] | None = None,
     ) -> None:
-        """Nothing is known yet.
+        """Start without known derivatives.
 
         Args:
             dag: whose nodes are differentiated.
-            constants: arguments whose symbols are numbers to it.
-            chain: the derivatives of symbols that are not independent, by those that are.
+            constants: arguments whose symbols count as numbers.
+            chain: derivatives of dependent symbols with respect to the independent ones.
         """
         self.dag = dag
         self._constants = constants
@@ -79,11 +79,16 @@ class Calculus:
         return self._supports[x.index]
 
     def derivative(self, x: Scalar, by: Symbol) -> Scalar:
-        """The partial derivative by one symbol."""
+        """The partial derivative of a scalar with respect to one symbol.
+
+        Args:
+            x: a node or a number.
+            by: the symbol, as (argument, place).
+        """
         return self.gradient(x).get(by, 0)
 
     def gradient(self, x: Scalar) -> Gradient:
-        """The partial derivatives by every symbol that a scalar depends on; those that are 0 left out.
+        """The partial derivatives of a scalar by symbol; those that are 0 are left out.
 
         Raises:
             ModelError: a function has no derivative.
@@ -114,10 +119,7 @@ class Calculus:
         return _combined((factor, self._gradients[x.index]) for factor, x in parts)
 
     def _steep(self, node: Node) -> Gradient:
-        """Of a function whose slope may be infinite, of an argument that may be constant there.
-
-        sqrt(max(x, 0)) is 0 for negative x, and so is its derivative: 0 over 0 counts as 0.
-        """
+        """A slope that may be infinite, at a kink: in sqrt(max(x, 0)) for x < 0, 0 over 0 counts as 0."""
         divisor = _STEEP[node.op](self.dag, node)
         found: Gradient = {}
         for symbol, slope in self._gradients[node.a.index].items():
@@ -126,7 +128,7 @@ class Calculus:
         return {symbol: -x for symbol, x in found.items()} if node.op == "acos" else found
 
     def _has_kink(self, x: Scalar) -> bool:
-        """Whether a scalar depends on what may be constant on one side: abs, min, max."""
+        """Whether a scalar depends on abs, min or max, which may be constant on one side."""
         if not isinstance(x, Node):
             return False
         for node in _below(x, self._kinked):
@@ -135,7 +137,7 @@ class Calculus:
         return self._kinked[x.index]
 
     def _partials(self, node: Node) -> list[Scalar]:
-        """The derivatives of one operation by those of its operands that are nodes."""
+        """The derivatives of one operation with respect to those of its operands that are nodes."""
         a, b = node.a, node.b
         pairs: list[tuple[Any, Callable[[], Scalar]]]
         if node.op == NEG:
@@ -156,7 +158,7 @@ class Calculus:
         return [partial() for operand, partial in pairs if isinstance(operand, Node)]
 
     def slope(self, node: Node) -> Scalar:
-        """The derivative of a function of one argument."""
+        """The derivative of a function node of one argument with respect to that argument."""
         if node.op == "abs":
             return self._side(node.a)
         if node.op == "sign":
@@ -172,7 +174,7 @@ class Calculus:
         return sign + (1 - sign * sign)
 
     def _slopes(self, node: Node) -> tuple[Scalar, Scalar]:
-        """Of a function of two arguments."""
+        """The two derivatives of a function of two arguments."""
         a, b = node.a, node.b
         if node.op == "atan2":
             squared = a * a + b * b
@@ -206,7 +208,7 @@ _STEEP: dict[str, Callable[[Dag, Node], Scalar]] = {
 
 
 class TermSizes:
-    """The size of the terms that scalars are sums of: what rounding errors are in proportion to.
+    """The sum of the absolute values of a scalar's terms, to which its rounding error is proportional.
 
     Example:
         >>> dag = Dag()
@@ -218,19 +220,19 @@ class TermSizes:
     """
 
     def __init__(self, calculus: Calculus, unknowns: Collection[str] | None = None) -> None:
-        """Nothing is known yet.
+        """Start without known sizes.
 
         Args:
             calculus: of the DAG.
-            unknowns: the arguments whose symbols vary; what depends on none of them is one term, the same
-                number at every evaluation. All symbols vary if left out.
+            unknowns: arguments whose symbols vary; a node that depends on none of them is one term. None for
+                all.
         """
         self._calculus, self._dag = calculus, calculus.dag
         self._unknowns = unknowns
         self._known: dict[int, Scalar] = {}
 
     def __call__(self, x: Scalar) -> Scalar:
-        """Sums of absolute values in place of sums."""
+        """The size of the terms of a scalar, in its unit."""
         if not isinstance(x, Node):
             return abs(x)
         for node in _below(x, self._known):
@@ -261,24 +263,24 @@ class TermSizes:
         )
 
     def _of_product(self, node: Node, a: Scalar, b: Scalar) -> Scalar:
-        """An error of one factor times the other's value: factors may be differences of what is large."""
+        """The error of each factor times the value of the other, since a factor may be a small difference."""
         x, y = (self._dag.function("abs", part) for part in (node.a, node.b))
         if _same(a, x):
             return x * b
         return a * y if _same(b, y) else x * b + a * y
 
     def _of_quotient(self, node: Node, a: Scalar, b: Scalar) -> Scalar:
-        """An error of the numerator, and of the denominator times the quotient."""
+        """The error of the numerator, and of the denominator times the quotient; over the denominator."""
         y, quotient = (self._dag.function("abs", part) for part in (node.b, node))
         return a / y if _same(b, y) else (a + quotient * b) / y
 
     def _of_steep(self, node: Node, a: Scalar) -> Scalar:
-        """Where a slope may be infinite: an error of e a there is one of some sqrt(e a), as in a root."""
+        """Where a slope may be infinite, an error of e a in the argument makes one of some sqrt(e a)."""
         steep = a / (_STEEP[node.op](self._dag, node) + (1e-5 * self._dag.sqrt(a) + SMALLEST))
         return self._dag.function("abs", node) + steep
 
     def _of_angle(self, node: Node, a: Scalar, b: Scalar) -> Scalar:
-        """Of the angle of a point: errors of its coordinates turn it the more the nearer the origin is."""
+        """The errors of a point's coordinates turn its angle the more, the nearer it is to the origin."""
         y, x, angle = (self._dag.function("abs", part) for part in (node.a, node.b, node))
         return angle + (x * a + y * b) / (y * y + x * x + SMALLEST)
 
@@ -305,7 +307,7 @@ def operands(node: Node) -> list[Node]:
 
 
 def _below(x: Node, known: Mapping[int, Any]) -> list[Node]:
-    """What a node depends on and is not known yet, itself too, in order of construction."""
+    """The nodes that a node depends on and that are not known yet, itself included, operands first."""
     found: dict[int, Node] = {}
     pending = [x]
     while pending:
@@ -326,12 +328,12 @@ _OPERATIONS: dict[str, Callable[..., Scalar]] = {
 
 
 class Replay:
-    """The same operations over another algebra, or over the same DAG with symbols replaced.
+    """Repeats the operations of a DAG over another algebra, or over the same DAG with symbols replaced.
 
     Args:
-        algebra: where to calculate.
-        symbol: what stands for a symbol there, given its argument and place.
-        number: what stands for a number there; itself if left out.
+        algebra: the algebra of the results.
+        symbol: the scalar for a symbol, given as (argument, place).
+        number: the scalar for a number; by default the number itself.
 
     Example:
         >>> from linegraph.algebra.protocol import Floats
@@ -347,7 +349,7 @@ class Replay:
         symbol: Callable[[Symbol], Scalar],
         number: Callable[[Scalar], Scalar] | None = None,
     ) -> None:
-        """Nothing is calculated yet; what has been is kept."""
+        """Start without known nodes; each node is computed once."""
         self._algebra = algebra
         self._symbol = symbol
         self._number = number or (lambda x: x)
@@ -362,7 +364,7 @@ class Replay:
         return self._known[x.index]
 
     def all(self, given: Iterable[Scalar]) -> list[Scalar]:
-        """Several of them."""
+        """Several scalars over the other algebra."""
         return [self(x) for x in given]
 
     def _value(self, node: Node) -> Scalar:
@@ -378,10 +380,21 @@ class Replay:
 
 
 def substitute(x: Scalar, dag: Dag, values: Mapping[Symbol, Scalar]) -> Scalar:
-    """A scalar of a DAG with some symbols replaced by others of its scalars."""
+    """A scalar of a DAG with some of its symbols replaced.
+
+    Args:
+        x: a node or a number.
+        dag: its DAG, to which the result belongs.
+        values: scalars of the same DAG by symbol.
+    """
     return substitution(dag, values)(x)
 
 
 def substitution(dag: Dag, values: Mapping[Symbol, Scalar]) -> Replay:
-    """The same for many scalars."""
+    """The replacement of symbols in many scalars of a DAG, which computes common nodes once.
+
+    Args:
+        dag: the DAG.
+        values: scalars of the same DAG by symbol.
+    """
     return Replay(dag, lambda symbol: values[symbol] if symbol in values else dag.symbol(*symbol))

@@ -1,7 +1,8 @@
-"""Solving M v̇ = r by M = L^T D L over any algebra, structural zeros skipped.
+"""Solution of M v̇ = r by M = L^T D L over any algebra, structural zeros skipped.
 
-Eliminated from the leaves to the root, the factor of a tree's mass matrix has no more non-zeros than the
-matrix itself: only ancestors of a joint are coupled with it (Featherstone 2005).
+Eliminated from the leaves to the root, the mass matrix of a kinematic tree has factors without fill-in: L has
+no more non-zeros than M itself, since only ancestors of a joint are coupled with it [Featherstone 2005].
+Elimination from the root, as in the usual Cholesky factorisation, would fill L.
 """
 
 from __future__ import annotations
@@ -15,11 +16,11 @@ if TYPE_CHECKING:
 
 
 class Solution(NamedTuple):
-    """Solution of a symmetric positive definite system.
+    """Solution of ``M v̇ = r``.
 
     Attributes:
         unknowns: v̇.
-        pivots: the diagonal of D, by coordinate; all positive exactly when M is positive definite.
+        pivots: the diagonal of D, by coordinate; all are positive exactly if M is positive definite.
     """
 
     unknowns: list[Scalar]
@@ -27,12 +28,12 @@ class Solution(NamedTuple):
 
 
 class Factors(NamedTuple):
-    """``M = L^T D L`` of a symmetric matrix.
+    """The factors of ``M = L^T D L``, M symmetric.
 
     Attributes:
         pivots: the diagonal of D, by coordinate.
-        inverses: theirs.
-        below: the entries of each row of L beside its diagonal of ones.
+        inverses: their reciprocals.
+        below: for each coordinate its row of L, {column: entry}, without the diagonal of ones.
         outward: the coordinates from the root to the leaves.
     """
 
@@ -42,11 +43,14 @@ class Factors(NamedTuple):
     outward: Sequence[int]
 
     def solve(self, right: Sequence[Scalar]) -> list[Scalar]:
-        """The x of ``M x = r``."""
+        """The solution x of ``M x = r``."""
         return self.substituted(self.scaled(self.reduced(right)))
 
     def reduced(self, right: Sequence[Scalar]) -> list[Scalar]:
-        """``y = L^-T r``: of two of them ``r1 . M^-1 r2 = y1 . D^-1 y2``."""
+        """``y = L^-T r``, from the leaves to the root.
+
+        Two such vectors give the product ``r1 . M^-1 r2 = y1 . D^-1 y2`` without the second substitution.
+        """
         y = list(right)
         for k in reversed(self.outward):
             if y[k] != 0:
@@ -55,11 +59,17 @@ class Factors(NamedTuple):
         return y
 
     def scaled(self, reduced: Sequence[Scalar]) -> list[Scalar]:
-        """``D^-1 y``."""
+        """``D^-1 y``, by the reciprocals of the pivots."""
         return [y * inverse for y, inverse in zip(reduced, self.inverses, strict=True)]
 
     def substituted(self, scaled: Sequence[Scalar], until: int | None = None) -> list[Scalar]:
-        """``L^-1 z``; of the coordinates outward beyond `until` nothing that is of use."""
+        """``x = L^-1 z``, from the root to the leaves.
+
+        Args:
+            scaled: z, by coordinate.
+            until: the last coordinate that is needed; entries of coordinates further outward are left
+                unsolved.
+        """
         x = list(scaled)
         for k in self.outward:
             for i, entry in self.below[k].items():
@@ -69,7 +79,7 @@ class Factors(NamedTuple):
         return x
 
     def inverse(self) -> list[list[Scalar]]:
-        """``M^-1``, of which each pair of equal entries is computed once."""
+        """``M^-1`` by rows; each of the two equal entries is computed once."""
         size = len(self.pivots)
         rows: list[list[Scalar]] = [[0] * size for _ in range(size)]
         for place, k in enumerate(self.outward):
@@ -81,7 +91,15 @@ class Factors(NamedTuple):
 
 
 def factored(rows: Sequence[Sequence[Scalar]], outward: Sequence[int]) -> Factors:
-    """Eliminate a symmetric M, of which one triangle is read, from the leaves to the root."""
+    """Factor a symmetric matrix ``M = L^T D L``, eliminating from the leaves to the root.
+
+    Args:
+        rows: M by rows; only entries m[k][i] with i further inward than k are read, and the diagonal.
+        outward: the coordinates in an order from the root to the leaves.
+
+    Returns:
+        The factors. A zero pivot is a ZeroDivisionError over numbers and not noticed over symbols.
+    """
     size = len(rows)
     m = [list(row) for row in rows]
     pivots: list[Scalar] = [0] * size
@@ -111,10 +129,11 @@ def solve(
     """Solve ``M x = r``.
 
     Args:
-        rows: M, of which one triangle is read if it is symmetric.
-        right: r.
+        rows: M by rows; of a symmetric M only one triangle is read.
+        right: r, by coordinate.
         outward: the coordinates in an order from the root to the leaves.
-        symmetric: whether M is; otherwise it is factored by ``M = U D L`` with the same pivots.
+        symmetric: whether M is symmetric; otherwise it is factored as ``U D L`` with pivots in the same
+            order.
     """
     (x,), pivots = solve_many(rows, [right], outward, symmetric=symmetric)
     return Solution(x, pivots)
@@ -127,7 +146,17 @@ def solve_many(
     *,
     symmetric: bool = True,
 ) -> tuple[list[list[Scalar]], list[Scalar]]:
-    """The same for several right-hand sides: the solutions, and the pivots."""
+    """Solve ``M x = r`` for several right-hand sides with one factorisation.
+
+    Args:
+        rows: M by rows; of a symmetric M only one triangle is read.
+        rights: the vectors r.
+        outward: the coordinates in an order from the root to the leaves.
+        symmetric: whether M is symmetric.
+
+    Returns:
+        The solutions, and the pivots by coordinate.
+    """
     if symmetric:
         factors = factored(rows, outward)
         return [factors.solve(right) for right in rights], factors.pivots
@@ -137,7 +166,7 @@ def solve_many(
 def _general(
     rows: Sequence[Sequence[Scalar]], rights: Sequence[Sequence[Scalar]], outward: Sequence[int]
 ) -> tuple[list[list[Scalar]], list[Scalar]]:
-    """The same for a matrix that is not symmetric."""
+    """Solve for several right-hand sides with a matrix that is not symmetric."""
     m = [list(row) for row in rows]
     found = [list(right) for right in rights]
     pivots: list[Scalar] = [0] * len(m)
@@ -164,7 +193,12 @@ def _general(
 
 
 def singular(rows: Sequence[Sequence[float]], *, symmetric: bool) -> int | None:
-    """The first unknown at which a matrix of numbers fails to be solved for; None if it is regular."""
+    """The first unknown at which the leading block of a matrix of numbers is singular; None if it is regular.
+
+    Args:
+        rows: a square matrix by rows.
+        symmetric: whether it is symmetric, and only one triangle is to be read.
+    """
     if _regular(rows, len(rows), symmetric):
         return None
     return next(k for k in range(len(rows)) if not _regular(rows, k + 1, symmetric))

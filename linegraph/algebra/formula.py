@@ -1,12 +1,13 @@
-"""User expressions from text: parsed by a walker of our own, never executed.
+"""Expressions that users write, as text; parsed by an own walker and never executed.
 
-A `Formula` is the parsed text. It is evaluated over any algebra by looking its names up in a mapping, so
-the same text gives numbers, DAG nodes or sympy. What may stand in it:
+A `Formula` is the parsed text. It is evaluated over any algebra by looking its names up in a mapping, so that
+the same text gives numbers, DAG nodes or SymPy expressions. The language:
 
     numbers   names   + - * / **   ( )   sin(x) ... max(x, y)   der(x)
     position(body.frame).x ... torque(joint).z   across(element)   through(element)
 
-Limits hold before any number is built: a text that would explode is refused, not tried.
+Its limits hold before any number is computed: a text that would explode, as 9**9**9, is refused and not
+tried.
 """
 
 from __future__ import annotations
@@ -58,15 +59,15 @@ class Formula:
 
     Attributes:
         op: ``number``, ``name``, ``der``, ``variable``, ``+ - * / **``, or the name of a function.
-        parts: operands; the value of a number, the text of a name; of a variable what, of which, and the
-            component.
+        parts: the operands; of a number its value, of a name its text, of a variable its kind, its owner and
+            its component.
     """
 
     op: str
     parts: tuple[Formula | Fraction | float | str, ...]
 
     def names(self) -> Iterator[str]:
-        """The names looked up, rates as ``der(x)``, in order of appearance, repeated as they are."""
+        """The names to be looked up, rates as ``der(x)``, in order of appearance and with repetitions."""
         if self.op == "name":
             yield str(self.parts[0])
         elif self.op == RATE:
@@ -80,11 +81,11 @@ class Formula:
                     yield from part.names()
 
     def evaluate(self, algebra: Algebra, values: Mapping[str, Scalar]) -> Scalar:
-        """The value over an algebra.
+        """The value of the expression over an algebra.
 
         Args:
             algebra: where to calculate.
-            values: scalars by name; a rate stands under ``der(x)``.
+            values: scalars by name, in the units of the model file; rates under ``der(x)``.
 
         Raises:
             ModelError: a name is not known, or a number is divided by zero.
@@ -102,10 +103,10 @@ class Formula:
 
 @lru_cache(maxsize=4096)  # a model's expressions are read by all who ask what they name
 def parse(text: str) -> Formula:
-    """Read an expression.
+    """Parse an expression.
 
     Raises:
-        ModelError: the text is no expression of this language; says what and at which column.
+        ModelError: the text is not an expression of this language; the message says why and at which column.
 
     Example:
         >>> from linegraph.algebra.protocol import Floats
@@ -127,7 +128,7 @@ def parse(text: str) -> Formula:
 
 
 def variable_of(name: str) -> tuple[str, str, str] | None:
-    """What, of which and the component of a variable as `Formula.names` writes it; None of other names.
+    """Kind, owner and component of a variable as `Formula.names` writes it; None for other names.
 
     Example:
         >>> variable_of("position(arm.tip).x"), variable_of("der(x)")
@@ -141,14 +142,14 @@ def variable_of(name: str) -> tuple[str, str, str] | None:
 
 
 class _Reader:
-    """Turns the parsed text into a `Formula`, refusing all that is not on the list."""
+    """Turns the parsed text into a `Formula`, refusing all syntax that is not listed."""
 
     def __init__(self, text: str) -> None:
         self._text = text
         self._left = MOST_NODES
 
     def read(self, node: ast.expr, depth: int) -> Formula:
-        """One node and what is below it."""
+        """One syntax node and all below it."""
         self._left -= 1
         if depth > DEEPEST:
             raise self._error(node, f"nested deeper than {DEEPEST}")
@@ -181,7 +182,7 @@ class _Reader:
         return Formula("variable", (what, self._thing(call, what), node.attr))
 
     def _thing(self, call: ast.Call, what: str) -> str:
-        """What a variable is of: a name, or ``body.frame``."""
+        """The owner of a variable: a name, or ``body.frame``."""
         if len(call.args) == 1 and not call.keywords:
             (node,) = call.args
             if isinstance(node, ast.Name):
@@ -200,7 +201,7 @@ class _Reader:
         return Formula(op, (left, right))
 
     def _check_power(self, node: ast.expr, exponent: Formula) -> None:
-        """An exponent is a number: an integer or a half-integer of moderate size."""
+        """Refuse exponents other than integers and half-integers of moderate size."""
         value: object = exponent.parts[0]
         negative = exponent.op == "-" and len(exponent.parts) == 1
         if negative and isinstance(value, Formula):
@@ -262,7 +263,7 @@ def _apply(op: str, operands: list[Scalar], algebra: Algebra) -> Scalar:
 
 
 def _refuse_notation(text: str) -> None:
-    """Notations that Python would read otherwise than their writer meant."""
+    """Refuse notations that Python would read in another way than their writer meant."""
     if not text.isascii():
         odd = next(c for c in text if not c.isascii())
         raise ModelError("", f"cannot read {_shown(text)}: {odd!r} is not ASCII")

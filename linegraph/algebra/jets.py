@@ -1,7 +1,7 @@
-"""Values with their first two time derivatives: what a prescribed motion needs.
+"""Scalars with their first two time derivatives, for prescribed motions.
 
-A `Jet` (x, ẋ, ẍ) calculates by the chain rule over any algebra, so a formula in t evaluated with
-t = (t, 1, 0) gives position, velocity and acceleration at once.
+A `Jet` (x, ẋ, ẍ) obeys the chain rule over any algebra, so that a formula in t evaluated at t = (t, 1, 0)
+gives position, velocity and acceleration at once: a truncated Taylor series [Griewank and Walther 2008].
 """
 
 from __future__ import annotations
@@ -22,7 +22,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Jet:
-    """x, ẋ and ẍ.
+    """A scalar with its first and second time derivative.
+
+    Attributes:
+        x: the value.
+        dx: ẋ.
+        ddx: ẍ, not divided by 2.
 
     Example:
         >>> t = Jet(2.0, 1, 0)
@@ -67,35 +72,45 @@ class Jet:
 
 
 def lifted(x: Scalar) -> Jet:
-    """A constant as a jet."""
+    """A constant as a jet with zero derivatives; a jet as it is."""
     return x if isinstance(x, Jet) else Jet(x, 0, 0)
 
 
 class Jets:
-    """The algebra of jets over another algebra."""
+    """The algebra of jets whose components are scalars of another algebra."""
 
     def __init__(self, base: Algebra) -> None:
         """Calculate components over `base`."""
         self._base = base
 
     def symbol(self, argument: str, place: int | str | None = None) -> Jet:
-        """A constant, but for the time itself."""
+        """The jet of a symbol: (t, 1, 0) for the time, otherwise a constant.
+
+        Args:
+            argument: name of the argument.
+            place: index or name of the entry; None if the argument is one scalar.
+        """
         return Jet(self._base.symbol(argument, place), 1 if argument == "t" else 0, 0)
 
     def sin(self, x: Scalar) -> Jet:
-        """Sine."""
+        """Sine of a jet (rad)."""
         return self.function("sin", x)
 
     def cos(self, x: Scalar) -> Jet:
-        """Cosine."""
+        """Cosine of a jet (rad)."""
         return self.function("cos", x)
 
     def sqrt(self, x: Scalar) -> Jet:
-        """Square root."""
+        """Square root of a jet; its derivatives are infinite at 0."""
         return self.function("sqrt", x)
 
     def power(self, base: Scalar, exponent: Fraction) -> Jet:
-        """A half-integer power: its derivatives are finite where those of the root in it are not."""
+        """A half-integer power, with finite derivatives where those of a root among its factors are infinite.
+
+        Args:
+            base: a jet or a constant.
+            exponent: a multiple of 1/2.
+        """
         a = lifted(base)
         y, first, second = (
             factor * power(a.x, exponent - order, self._base) if factor else 0
@@ -104,10 +119,15 @@ class Jets:
         return Jet(y, first * a.dx, second * (a.dx * a.dx) + first * a.ddx)
 
     def function(self, name: str, *x: Scalar) -> Jet:
-        """Any smooth function of `functions.ARITY`.
+        """A smooth elementary function of jets.
+
+        Args:
+            name: its name in `ir.functions.ARITY`.
+            *x: jets or constants; of `atan2` first y, then x.
 
         Raises:
-            ModelError: the function has no second derivative everywhere.
+            ModelError: the function does not have two derivatives everywhere, as `abs`, `sign`, `min` and
+                `max`.
         """
         if name == "atan2":
             return self._angle(lifted(x[0]), lifted(x[1]))
@@ -119,7 +139,7 @@ class Jets:
         return Jet(y, first * a.dx, second * (a.dx * a.dx) + first * a.ddx)
 
     def _angle(self, y: Jet, x: Jet) -> Jet:
-        """The angle of the point (x, y): its rate is the moment of the velocity over the distance squared."""
+        """``atan2(y, x)``: its rate is (x ẏ - y ẋ) / (x² + y²)."""
         squared = x.x * x.x + y.x * y.x
         rate = (x.x * y.dx - y.x * x.dx) / squared
         moment = x.x * y.ddx - y.x * x.ddx
@@ -175,6 +195,13 @@ _DERIVATIVES: dict[str, Callable[[Algebra, Scalar, Scalar], tuple[Scalar, Scalar
 
 
 def derivatives(name: str, base: Algebra, x: Scalar, y: Scalar) -> tuple[Scalar, Scalar] | None:
-    """First and second derivative of a smooth function at x, where it is y; None of any other."""
+    """First and second derivative of a smooth function of one argument; None for any other function.
+
+    Args:
+        name: of the function.
+        base: the algebra of x and y.
+        x: its argument.
+        y: its value at x, which many derivatives reuse.
+    """
     found = _DERIVATIVES.get(name)
     return found(base, x, y) if found else None

@@ -1,4 +1,4 @@
-"""Elimination with complete pivoting over floats, as emitted code does it, and columns far from dependent."""
+"""Numeric elimination with complete pivoting, as emitted code does it, and choice of independent columns."""
 
 from __future__ import annotations
 
@@ -13,9 +13,18 @@ Array = Any
 
 
 def free_motions(J: Array, rank: int) -> Array:
-    """T, N x (N - rank): the motions that J in pure numbers allows, one for each velocity it leaves free.
+    """A basis T of the motions that constraints J allow, J T = 0, with one column for each free velocity.
 
-    Unlike orthogonal vectors these do not mix the motions of light bodies with those of heavy ones.
+    From complete pivoting P J Q = L [U1 U2], T = Q [-U1⁻¹ U2; 1]. An orthonormal basis, as an SVD gives it,
+    would mix the motions of light bodies with those of heavy ones, whose rounding errors hide the light ones
+    in T^T M T.
+
+    Args:
+        J: constraints x N, made dimensionless by lengths and scales.
+        rank: its rank at most; a pivot not above `DEPENDENT` ends the elimination earlier.
+
+    Returns:
+        T, N x (N - rank).
     """
     import numpy as np
 
@@ -29,7 +38,7 @@ def free_motions(J: Array, rank: int) -> Array:
 
 
 def _eliminated(J: Array, most: int) -> tuple[Array, int, Array]:
-    """P J Q = L U in one array, its rank, and where its columns come from."""
+    """``P J Q = L U`` in one array, its rank, and the order of the columns."""
     import numpy as np
 
     A = np.array(J, float)
@@ -48,9 +57,18 @@ def _eliminated(J: Array, most: int) -> tuple[Array, int, Array]:
 
 
 def without_inertia(M: Array, T: Array, rounding: float) -> list[Array]:
-    """Combinations of the motions T that move no inertia of M; without them T^T M T is regular.
+    """Combinations of the motions T without inertia; T^T M T of the others is regular.
 
-    A pivot of T^T M T is zero if it is a smaller part than `rounding` of what it was made of.
+    A pivot of T^T M T counts as zero if it is less than `rounding` times the sum of its terms' absolute
+    values. An absolute bound would not do: M has light and heavy bodies, and entries in kg and in kg m².
+
+    Args:
+        M: mass matrix, N x N.
+        T: motions as columns, N x n.
+        rounding: relative size of a pivot that counts as zero.
+
+    Returns:
+        Vectors of N velocities, each with no kinetic energy.
     """
     import numpy as np
 
@@ -70,17 +88,17 @@ def without_inertia(M: Array, T: Array, rounding: float) -> list[Array]:
 
 
 def apart_columns(J: Array, order: Sequence[int], most: int, apart: float) -> list[int]:
-    """Columns of J, the first in an order of which the least singular value stays above a bound.
+    """Indices of columns of J, taken in an order as long as their least singular value stays above a bound.
 
-    Columns taken so far are Q R with Q orthonormal. As R grows by a column, so does its inverse, and the
-    least singular value lies between 1 and sqrt(n) over Frobenius' norm of that; itself it is asked for only
-    where these two do not decide.
+    The columns taken are Q R with Q orthonormal. R grows by a column at a time, and so does its inverse; the
+    least singular value lies between 1 and sqrt(n) times 1 / ‖R⁻¹‖ in the Frobenius norm. An SVD is computed
+    only where these two bounds do not decide.
 
     Args:
-        J: in pure numbers.
+        J: rows x columns, dimensionless.
         order: in which columns are tried.
-        most: how many are taken.
-        apart: the bound.
+        most: how many columns are taken at most.
+        apart: the bound, dimensionless.
     """
     import numpy as np
 

@@ -16,7 +16,11 @@ LARGEST_NUMBER = 4096
 
 
 def quotient(a: Scalar, b: Scalar) -> Scalar:
-    """A quotient, exact where both numbers are.
+    """The quotient ``a / b``, an exact fraction if both are integers or fractions.
+
+    Args:
+        a: the dividend, a scalar of any algebra.
+        b: the divisor.
 
     Raises:
         ModelError: b is the number zero.
@@ -28,13 +32,19 @@ def quotient(a: Scalar, b: Scalar) -> Scalar:
 
 
 def power(base: Scalar, exponent: Fraction | int, algebra: Algebra) -> Scalar:
-    """Integer and half-integer powers by products, one root and one division.
+    """An integer or half-integer power by repeated squaring, one root and one division.
 
-    An algebra whose scalars carry derivatives takes half-integer powers itself: the derivatives of the
-    factors may be infinite where that of the product is not.
+    An algebra whose scalars carry derivatives may define `power` itself for half-integers: in x^(3/2) = x
+    sqrt(x) the derivative of the factor sqrt(x) is infinite at 0, that of the product is not.
+
+    Args:
+        base: a scalar of the algebra.
+        exponent: a multiple of 1/2.
+        algebra: whose `sqrt` is used.
 
     Raises:
-        ModelError: a power of numbers is too large, or zero is raised to a negative power.
+        ModelError: a power of numbers has more than `LARGEST_NUMBER` bits, or zero is raised to a negative
+            power.
     """
     if isinstance(base, (int, Fraction)):
         size = max(base.numerator.bit_length(), base.denominator.bit_length())

@@ -1,12 +1,12 @@
-"""What a derivation is written over: scalars that know + - * / and these few functions.
+"""The protocol of scalar algebras: + - * / of the scalars themselves and a few functions.
 
 The same derivation runs over three algebras:
 
-    expression.Dag      nodes           programs to emit, costs to count, closed forms by `simplification`
-    sympy_walk.Sympy    sympy           the paper's own matrices, to be read as they are
-    algebra.Floats      floats          the numeric reference
+    ir.dag.Dag              nodes      programs to emit, costs to count, closed forms by `simplification`
+    sympy_scalars.Sympy     SymPy      the paper's own matrices, to be read as they are
+    protocol.Floats         floats     the numeric reference
 
-Numbers belong to every algebra.
+Python numbers belong to every algebra.
 """
 
 from __future__ import annotations
@@ -23,10 +23,15 @@ if TYPE_CHECKING:
 
 
 class Algebra(Protocol):
-    """The functions a derivation may apply to a scalar."""
+    """The functions that a derivation may apply to a scalar."""
 
     def symbol(self, argument: str, place: int | str | None = None) -> Scalar:
-        """The scalar standing at `place` of an argument: ``q, 3`` or ``p, "mass"`` or ``t, None``."""
+        """The scalar for one entry of an argument, as ``symbol("q", 3)`` or ``symbol("p", "mass")``.
+
+        Args:
+            argument: name of the argument.
+            place: index or name of the entry; None if the argument is one scalar.
+        """
 
     def sin(self, x: Scalar) -> Scalar:
         """Sine of an angle in radians."""
@@ -38,14 +43,19 @@ class Algebra(Protocol):
         """The non-negative square root."""
 
     def function(self, name: str, *x: Scalar) -> Scalar:
-        """Any function of `functions.ARITY`."""
+        """An elementary function of `ir.functions.ARITY`.
+
+        Args:
+            name: its name, as ``"exp"`` or ``"atan2"``.
+            *x: as many scalars as it takes.
+        """
 
 
 class Floats:
-    """Double precision: the algebra in which a derivation simply computes.
+    """Double precision, in which a derivation computes numbers at one state.
 
     Args:
-        arguments: the numbers of each argument, by name: a sequence, a mapping or one number.
+        arguments: the numbers of each argument by its name: a sequence, a mapping or one number.
     """
 
     def __init__(self, **arguments: Scalar) -> None:
@@ -53,7 +63,15 @@ class Floats:
         self.arguments = arguments
 
     def symbol(self, argument: str, place: int | str | None = None) -> Scalar:
-        """The number given for this place."""
+        """The number given for one entry of an argument.
+
+        Args:
+            argument: name of the argument.
+            place: index or name of the entry; None if the argument is one number.
+
+        Raises:
+            KeyError: nothing was given for it.
+        """
         given = self.arguments[argument]
         return given if place is None else given[place]
 
@@ -62,31 +80,52 @@ class Floats:
     sqrt = staticmethod(math.sqrt)
 
     def function(self, name: str, *x: Scalar) -> Scalar:
-        """Any function of `functions.ARITY`."""
+        """The value of an elementary function of `ir.functions.ARITY`.
+
+        Args:
+            name: its name.
+            *x: its arguments; angles in rad.
+
+        Raises:
+            ModelError: the function has no value there.
+        """
         return of_numbers(name, *x)
 
 
 class Constants:
-    """Numbers by the standard library, symbols by sympy: what is known before an algebra is chosen."""
+    """Numbers by the standard library, SymPy expressions by SymPy, before an algebra has been chosen."""
 
     def symbol(self, argument: str, place: int | str | None = None) -> Scalar:
-        """There are none among constants."""
+        """Constants have no symbols, so this always fails.
+
+        Args:
+            argument: name of the argument.
+            place: index or name of the entry.
+
+        Raises:
+            KeyError: always.
+        """
         raise KeyError(argument)
 
     def sin(self, x: Scalar) -> Scalar:
-        """Sine of an angle in radians."""
+        """Sine of an angle in radians, a number or a SymPy expression."""
         return _constant("sin", x)
 
     def cos(self, x: Scalar) -> Scalar:
-        """Cosine of an angle in radians."""
+        """Cosine of an angle in radians, a number or a SymPy expression."""
         return _constant("cos", x)
 
     def sqrt(self, x: Scalar) -> Scalar:
-        """The non-negative square root."""
+        """The non-negative square root of a number or a SymPy expression."""
         return _constant("sqrt", x)
 
     def function(self, name: str, *x: Scalar) -> Scalar:
-        """Any function of `functions.ARITY`; of numbers only."""
+        """The value of an elementary function of numbers.
+
+        Args:
+            name: its name in `ir.functions.ARITY`.
+            *x: numbers; angles in rad.
+        """
         return of_numbers(name, *x)
 
 
@@ -102,6 +141,11 @@ def _constant(function: str, x: Scalar) -> Scalar:
 
 
 def set_label(algebra: Algebra, text: str) -> None:
-    """Tell a DAG which part the next nodes belong to."""
+    """Label the nodes that a DAG creates from now on; emitted temporaries are traced by these labels.
+
+    Args:
+        algebra: without effect unless it is a DAG.
+        text: the joint, body or term that is derived next.
+    """
     if hasattr(algebra, "label"):
         algebra.label = text

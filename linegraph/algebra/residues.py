@@ -1,9 +1,10 @@
-"""Exact judgement of expressions: their values modulo a large prime, each symbol a number like any other.
+"""Exact zero tests and ranks of expressions, by their residues modulo a large prime.
 
-Two expressions that are the same rational function have the same residue; two that are not differ but for
-one chance in 10^18. So whether a coefficient is zero, and what the rank of a matrix of expressions is, is
-decided without tolerance. Sine and cosine of one argument keep sin² + cos² = 1; other functions are taken for
-numbers without a relation.
+Each symbol has a fixed pseudorandom residue. Expressions that are the same rational function have the same
+residue; two different ones have the same with a probability of about their degree over 2^61 [Schwartz 1980;
+Zippel 1979]. Whether a coefficient is zero, and what the rank of a matrix of expressions is, is thus decided
+without a tolerance, which floats at random points would need. Sine and cosine of one argument satisfy
+sin² + cos² = 1 by the half-angle substitution; other functions count as independent of each other.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ Row = dict[Any, int]
 
 
 class Residues:
-    """Values of scalars modulo `PRIME`.
+    """Values of scalars modulo `PRIME`, remembered by node.
 
     Example:
         >>> from linegraph.ir.dag import Dag
@@ -40,11 +41,11 @@ class Residues:
     """
 
     def __init__(self) -> None:
-        """Nothing is known yet."""
+        """Start without known residues."""
         self._known: dict[int, int] = {}
 
     def __call__(self, x: Scalar) -> int:
-        """The residue of a scalar."""
+        """The residue of a scalar, 0 to PRIME - 1."""
         if not isinstance(x, Node):
             return of_number(x)
         pending = [x]
@@ -89,13 +90,16 @@ class Residues:
 
 
 def of_number(x: Any) -> int:
-    """A number as its decimal digits say it: 0.1 is one tenth."""
+    """The residue of a number, a float by its shortest decimal digits: 0.1 is one tenth.
+
+    The binary value of 0.1 would make 0.1 + 0.2 - 0.3 differ from zero.
+    """
     exact = Fraction(repr(float(x))) if isinstance(x, float) else Fraction(x)
     return exact.numerator * inverse(exact.denominator) % PRIME
 
 
 def inverse(x: int) -> int:
-    """One over a residue; of zero, which only chance meets, zero."""
+    """The reciprocal modulo `PRIME` by Fermat's little theorem; 0 for 0, which occurs by chance only."""
     return pow(x, PRIME - 2, PRIME)
 
 
@@ -105,7 +109,7 @@ def _hashed(*parts: Any) -> int:
 
 
 class Span:
-    """The space that rows of residues span, grown row by row.
+    """The space spanned by rows of residues, extended row by row.
 
     Example:
         >>> span = Span()
@@ -114,18 +118,23 @@ class Span:
     """
 
     def __init__(self) -> None:
-        """The space of nothing."""
+        """Start with the space of dimension 0."""
         self._rows: list[tuple[Any, Row, Row]] = []
 
     def __len__(self) -> int:
-        """Its dimension."""
+        """The dimension of the space."""
         return len(self._rows)
 
     def add(self, row: Row, name: Any) -> Row | None:
-        """Grow by a row.
+        """Extend the space by a row.
+
+        Args:
+            row: residues by column, zeros left out.
+            name: of the row, for combinations in which it takes part.
 
         Returns:
-            None if it was independent; else the combination of rows, by their names, that vanishes.
+            None if the row was independent; else the factors, by names of rows, of a combination that
+            vanishes.
         """
         rest, made = self._reduced(row)
         made[name] = 1
@@ -137,7 +146,7 @@ class Span:
         return None
 
     def holds(self, row: Row) -> bool:
-        """Whether a row lies in it."""
+        """Whether a row lies in the space."""
         return not self._reduced(row)[0]
 
     def _reduced(self, row: Row) -> tuple[Row, Row]:
@@ -165,7 +174,7 @@ def _scaled(row: Row, factor: int) -> Row:
 
 
 def rank(rows: Sequence[Row]) -> int:
-    """The rank of a matrix."""
+    """The rank of a matrix of residues, given by sparse rows."""
     span = Span()
     for k, row in enumerate(rows):
         span.add(row, k)

@@ -1,4 +1,4 @@
-"""Products that are half-integer powers: x sqrt(x) is x^(3/2), differentiable where sqrt(x) is not."""
+"""Half-integer powers among products: x sqrt(x) is x^(3/2), differentiable at 0 where sqrt(x) is not."""
 
 from __future__ import annotations
 
@@ -16,7 +16,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class RootedPower:
-    """A product ``base^exponent rest`` in which a factor is a root of the base; the exponent is 1 or more."""
+    """A product ``base^exponent rest`` one of whose factors is a root of the base.
+
+    Attributes:
+        base: a scalar.
+        exponent: a multiple of 1/2, at least 1.
+        rest: the product of the other factors.
+    """
 
     base: Scalar
     exponent: Fraction
@@ -25,13 +31,15 @@ class RootedPower:
 
 @dataclass
 class _Factors:
-    """What a product is made of.
+    """The factors of a product.
 
     Attributes:
-        signs: of each base, by its index, which sign it has under its root.
-        exponents: how often each base is a factor; each root counts one half.
+        signs: for each base, by its index, the sign that it has under its root.
+        coefficient: product of the numbers.
+        exponents: how often each base is a factor; a root counts one half.
+        bases: the bases by index.
         others: factors without such a root.
-        divisors: what it is divided by.
+        divisors: the divisors.
     """
 
     signs: dict[int, int]
@@ -42,7 +50,7 @@ class _Factors:
     divisors: list[Scalar] = field(default_factory=list)
 
     def add(self, x: Scalar) -> None:
-        """One more factor, taken apart."""
+        """Take one more factor apart and enter its parts."""
         if not isinstance(x, Node):
             self.coefficient = self.coefficient * x
             return
@@ -71,15 +79,15 @@ class _Factors:
 
 
 class Roots:
-    """Finds such products among the nodes of one DAG."""
+    """Finds half-integer powers among the nodes of one DAG."""
 
     def __init__(self, dag: Dag) -> None:
-        """Nothing is known yet."""
+        """Start without known nodes."""
         self._dag = dag
         self._rooted: dict[int, bool] = {}
 
     def power_in(self, node: Node) -> RootedPower | None:
-        """What a product is a power of; None where no factor is the root of another one's base.
+        """A product as a half-integer power; None where no factor is the root of another factor's base.
 
         Example:
             >>> from linegraph.ir.dag import Dag
@@ -121,7 +129,7 @@ class Roots:
         return RootedPower(factors.signs[index] * factors.bases[index], exponent, rest)
 
     def _has_root(self, node: Node) -> bool:
-        """Whether a square root is a factor, of the numerator in quotients."""
+        """Whether a square root is a factor, in quotients of the numerator."""
         found = self._rooted.get(node.index)
         if found is None:
             inner = {NEG: (node.a,), DIV: (node.a,), MUL: (node.a, node.b)}.get(node.op, ())
@@ -132,7 +140,7 @@ class Roots:
 
 
 def _stripped(node: Node) -> tuple[Scalar, Node]:
-    """A number and a node whose product this is."""
+    """The number and the node whose product a node is."""
     number: Scalar = 1
     while True:
         if node.op == NEG:

@@ -1,9 +1,10 @@
-"""Scalars that know their values at sample parameters, and how exact these are: linear algebra with symbols.
+"""Scalars with their values at sample parameters and bounds of the errors: linear algebra with symbols.
 
-Elimination has to know what is zero. A `Traced` scalar has its expression, a node of a DAG or a number, and
-beside it its values at a few random parameters, each with a bound of its error. What is zero within that
-bound at all of them is the number 0, what is one integer at all of them is that integer: so sums of squares
-of sine and cosine become 1, and terms that cancel leave nothing.
+Elimination has to know which entries are zero. A `Traced` scalar has its expression, a node of a DAG or a
+number, and its values at a few random parameters, each with a bound of its error. A scalar that is zero
+within that bound at all samples becomes the number 0, one that is the same integer everywhere becomes that
+integer: sums of squares of sine and cosine become 1, and terms that cancel vanish. Exact residues would not
+do, since they take the rounded numbers of a geometry for exact ones.
 """
 
 from __future__ import annotations
@@ -34,7 +35,8 @@ class Traced:
 
     Attributes:
         node: its expression.
-        values, errors: its values, and how far they may be off.
+        values: one number for each sample.
+        errors: bounds of their absolute errors.
 
     Example:
         >>> c, s = given(0.8, [0.8], 0.0), given(0.6, [0.6], 0.0)
@@ -45,7 +47,7 @@ class Traced:
     __slots__ = ("errors", "node", "values")
 
     def __init__(self, node: Any, values: Sequence[float], errors: Sequence[float]) -> None:
-        """Keep the three; `sampled` looks for numbers first."""
+        """Keep the three as they are; `traced` replaces integers by numbers first."""
         self.node = node
         self.values = tuple(values)
         self.errors = tuple(errors)
@@ -93,7 +95,7 @@ class Traced:
         return _inverse(self) * other
 
     def _like(self, other: Scalar) -> Traced | None:
-        """A number as one of these; None for zero."""
+        """A number as a traced scalar; None for zero."""
         if isinstance(other, Traced):
             return other
         if other == 0:
@@ -109,7 +111,13 @@ def _inverse(x: Traced) -> Traced:
 
 
 def traced(node: Any, values: Sequence[float], errors: Sequence[float]) -> Scalar:
-    """A scalar, or the integer that it is."""
+    """A scalar with its values, or the integer that these agree on.
+
+    Args:
+        node: its expression.
+        values: at the samples.
+        errors: bounds of their absolute errors; `LOOSE` times as much is allowed.
+    """
     nearest = round(values[0]) if abs(values[0]) < LARGEST else 0
     if all(abs(v - nearest) <= LOOSE * e for v, e in zip(values, errors, strict=True)):
         return nearest
@@ -117,19 +125,25 @@ def traced(node: Any, values: Sequence[float], errors: Sequence[float]) -> Scala
 
 
 def given(node: Any, values: Sequence[float], within: float) -> Scalar:
-    """A scalar of a model at the samples, exact to rounding of its own size and to `within`."""
+    """A scalar of a model, exact to rounding of its own size and to `within`.
+
+    Args:
+        node: its expression; integers and fractions are returned as they are.
+        values: at the samples.
+        within: an absolute error that comes on top of rounding.
+    """
     if isinstance(node, (int, Fraction)):
         return node
     return traced(node, values, [EPS * abs(v) + within for v in values])
 
 
 def size(x: Scalar) -> float:
-    """How large a scalar is at the first sample."""
+    """The absolute value at the first sample."""
     return abs(x.values[0]) if isinstance(x, Traced) else abs(float(x))
 
 
 def _rank(x: Scalar) -> tuple[int, float]:
-    """How welcome a pivot is: a unit, another number, a constant, anything; of these the largest."""
+    """The order of preference of a pivot: ±1, another number, a constant, any scalar; then by size."""
     if not isinstance(x, Traced):
         return (0, 0.0) if x in (1, -1) else (1, 0.0)
     return (2 if isinstance(x.node, float) else 3, -size(x))
@@ -138,12 +152,16 @@ def _rank(x: Scalar) -> tuple[int, float]:
 def reduced(
     rows: Sequence[Row], order: Sequence[int] | None = None, kinds: Sequence[Any] = ()
 ) -> tuple[list[Row], list[int]]:
-    """Rows in reduced echelon form, and the column of each one's pivot.
+    """Rows in reduced echelon form, and the column of each row's pivot.
 
     Args:
-        rows: they are left as they are.
-        order: the columns in which pivots are looked for first; by default wherever they are best.
-        kinds: of each column which others are of its kind, so that they can be compared.
+        rows: not modified.
+        order: the columns in which pivots are looked for, first ones first; by default the best pivot
+            anywhere.
+        kinds: for each column a key; entries of columns with the same key are comparable in size.
+
+    Raises:
+        AssertionError: a row has entries in columns outside `order` only.
     """
     left = [list(row) for row in rows]
     done: list[Row] = []
@@ -167,7 +185,7 @@ def reduced(
 
 
 def _over(x: Any, pivot: Scalar) -> Scalar:
-    """A number over a pivot, exact."""
+    """A number divided by a pivot; exact if both are numbers."""
     if isinstance(pivot, Traced):
         return x / pivot
     quotient = Fraction(x) / Fraction(pivot)
@@ -175,7 +193,7 @@ def _over(x: Any, pivot: Scalar) -> Scalar:
 
 
 def _less(row: Row, pivot_row: Row, column: int) -> Row:
-    """A row without its entry in a column."""
+    """A row less the multiple of the pivot row that clears a column."""
     factor = row[column]
     if factor == 0:
         return row
@@ -191,7 +209,7 @@ def _best(rows: Sequence[Row]) -> tuple[int, int]:
 
 
 def _first(rows: Sequence[Row], order: Sequence[int], kinds: Sequence[Any]) -> tuple[int, int]:
-    """The best pivot in the first column that has a good one."""
+    """The best pivot in the first column with an entry that is not weak."""
     for least in (WEAK, 0.0):
         for k in order:
             alike = [n for n, kind in enumerate(kinds) if kind == kinds[k]] or [k]
@@ -206,7 +224,11 @@ def _first(rows: Sequence[Row], order: Sequence[int], kinds: Sequence[Any]) -> t
 
 
 def kernel(rows: Sequence[Row], count: int) -> list[Row]:
-    """A basis of all x with ``rows x = 0``, of so many entries.
+    """A basis of all x with ``rows x = 0``.
+
+    Args:
+        rows: the matrix by rows.
+        count: the number of entries of x.
 
     Example:
         >>> kernel([[1, 2, 0]], 3)
@@ -226,7 +248,11 @@ def kernel(rows: Sequence[Row], count: int) -> list[Row]:
 
 
 def closed(rows: Sequence[Row], action: Callable[[Row], Row]) -> list[Row]:
-    """A basis of the smallest space that holds some rows and what an action makes of all its members.
+    """A basis of the smallest space that contains some rows and is invariant under a linear map.
+
+    Args:
+        rows: vectors of the space.
+        action: the map.
 
     Example:
         >>> closed([[1, 0, 0]], lambda row: [-row[1], row[0], 0])

@@ -1,4 +1,4 @@
-"""Scalars: what the formulas of a derivation are written with."""
+"""The type of the scalars in a derivation's formulas."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""sympy's expressions and other algebras': the algebra of sympy, and walks from one to the other."""
+"""The algebra of SymPy expressions, and conversion between these and scalars of other algebras."""
 
 from __future__ import annotations
 
@@ -28,18 +28,23 @@ OURS = {theirs: ours for ours, theirs in RENAMED.items()}
 
 
 class Sympy:
-    """The algebra of sympy expressions: every argument's entry is a symbol of its own name.
+    """The algebra of SymPy expressions: every entry of an argument is a symbol with a name of its own.
 
     Args:
-        names: for each argument, the symbols' names in order.
+        names: for each argument the names of its entries in order.
     """
 
     def __init__(self, names: Mapping[str, Iterable[str]] | None = None) -> None:
-        """Keep the names that symbols are shown with."""
+        """Keep the names of the entries."""
         self._names = {argument: list(given) for argument, given in (names or {}).items()}
 
     def symbol(self, argument: str, place: int | str | None = None) -> Expr:
-        """The symbol of this entry."""
+        """The SymPy symbol for one entry of an argument.
+
+        Args:
+            argument: name of the argument.
+            place: index of the entry, or the symbol's own name; None for a symbol with the argument's name.
+        """
         if place is None or isinstance(place, str):
             return sympy.Symbol(place or argument)
         return sympy.Symbol(self._names[argument][place])
@@ -49,15 +54,25 @@ class Sympy:
     sqrt = staticmethod(sympy.sqrt)
 
     def function(self, name: str, *x: Expr) -> Expr:
-        """Any function of `functions.ARITY`."""
+        """SymPy's function for an elementary function of `ir.functions.ARITY`.
+
+        Args:
+            name: its name in linegraph; ``"abs"`` becomes `sympy.Abs`.
+            *x: its arguments.
+        """
         return getattr(sympy, RENAMED.get(name, name))(*x)
 
 
 def evaluate(expression: Expr, algebra: Algebra, parameters: Mapping[str, Scalar]) -> Scalar:
-    """Walk a sympy expression of parameters into another algebra.
+    """A SymPy expression of parameters as a scalar of another algebra.
+
+    Args:
+        expression: a SymPy expression or a number, no text.
+        algebra: the algebra of the result.
+        parameters: scalars of that algebra by name of parameter.
 
     Raises:
-        ModelError: a symbol is no parameter, or an operation has no counterpart in emitted code.
+        ModelError: a symbol is not a parameter, or an operation has no counterpart in emitted code.
 
     Example:
         >>> from linegraph.algebra.protocol import Floats
@@ -80,14 +95,14 @@ def evaluate(expression: Expr, algebra: Algebra, parameters: Mapping[str, Scalar
 
 
 def number(e: Expr) -> Scalar:
-    """A sympy number as an int or a fraction where exact, else as a float."""
+    """A SymPy number as an int or a Fraction if it is rational, else as a float."""
     if e.is_Integer:
         return int(e)
     return Fraction(e.p, e.q) if e.is_Rational else float(e)
 
 
 def _apply(e: Expr, parts: list[Scalar], algebra: Algebra) -> Scalar:
-    """One operation of sympy's over another algebra."""
+    """One SymPy operation over another algebra."""
     if e.is_Add:
         return _fold(lambda a, b: a + b, parts)
     if e.is_Mul:
@@ -103,10 +118,15 @@ def _apply(e: Expr, parts: list[Scalar], algebra: Algebra) -> Scalar:
 
 
 def power(base: Scalar, exponent: Expr, algebra: Algebra) -> Scalar:
-    """Integer and half-integer powers by products, roots and one division.
+    """An integer or half-integer power by products, one root and one division.
+
+    Args:
+        base: a scalar of the algebra.
+        exponent: a SymPy number; its double must be an integer of at most 128.
+        algebra: whose `sqrt` is used.
 
     Raises:
-        ModelError: any other exponent.
+        ModelError: the exponent is another one, or zero is raised to a negative power.
     """
     twice = 2 * (sympy.Rational(float(exponent)) if exponent.is_Float else exponent)
     if not twice.is_Integer or abs(twice) > 128:
@@ -123,11 +143,11 @@ def power(base: Scalar, exponent: Expr, algebra: Algebra) -> Scalar:
 
 
 def to_sympy(x: Scalar, symbol: Callable[[Symbol], Expr]) -> Expr:
-    """A scalar of a DAG as a sympy expression, intermediates substituted.
+    """A scalar of a DAG as a SymPy expression, with all intermediates substituted.
 
     Args:
         x: a node or a number.
-        symbol: what a symbol is written as, given its argument and place.
+        symbol: the SymPy expression for a symbol, given as (argument, place).
     """
     return sympy.sympify(Replay(Sympy(), symbol)(x), strict=True)
 

@@ -253,7 +253,7 @@ class Rotation:
 
 
 def rotation_of(m: Matrix) -> Rotation:
-    """A constant rotation matrix by its cheapest factor: none, `Relabel`, `Turn` or `Full`; compared exactly."""
+    """A constant rotation matrix by its cheapest factor: none, `Relabel`, `Turn` or `Full`."""
     if m == IDENTITY_MATRIX:
         return Rotation()
     if all(x in (0, 1, -1) for row in m for x in row):

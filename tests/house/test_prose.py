@@ -6,10 +6,11 @@ The rule is about length and sections only; whether a docstring is good has to b
 from __future__ import annotations
 
 import ast
+import re
 from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
-from house.rooms import ROOMS, files, parsed, room
+from house.rooms import ROOMS, ROOT, files, parsed, room
 from house.test_house import of_click, parameters
 
 if TYPE_CHECKING:
@@ -19,7 +20,6 @@ FEWEST_WORDS = 4
 FEWEST_ARGUMENTS = 2
 
 PENDING = {
-    "algebra",
     "notation",
     "formulation",
     "paper",
@@ -142,6 +142,37 @@ def test_docstrings_say_more_than_the_name_and_list_arguments() -> None:
 def test_what_is_pending_is_still_to_be_done() -> None:
     assert set(ROOMS) >= PENDING
     assert set(offenders()) >= PENDING
+
+
+CITED = re.compile(r"\[([^\[\]]*\b(?:19|20)\d\d\b[^\[\]]*)\]")
+LISTED = re.compile(r"^\*\*\[(.+)\]\*\*", re.MULTILINE)
+
+
+def citations(text: str) -> Iterator[str]:
+    """Authors and year of all that a docstring cites, as ``[Author 1990, sec. 2; Other 2000]``."""
+    for cited in CITED.findall(" ".join(text.split())):
+        yield from (work.partition(",")[0].strip() for work in cited.split(";"))
+
+
+def docstrings() -> Iterator[tuple[str, str]]:
+    """Every docstring with its module, those of private things, too."""
+    documented = ast.Module | ast.ClassDef | ast.FunctionDef
+    for name, path in files().items():
+        for node in ast.walk(parsed(path)):
+            if isinstance(node, documented):
+                yield name, ast.get_docstring(node) or ""
+
+
+def test_works_that_docstrings_cite_are_listed() -> None:
+    listed = set(LISTED.findall((ROOT / "docs" / "references.md").read_text(encoding="utf-8")))
+    cited = {(name, work) for name, text in docstrings() for work in citations(text)}
+    assert {work for _, work in cited}
+    assert {(name, work) for name, work in cited if work not in listed} == set()
+
+
+def test_the_search_for_citations_finds_them() -> None:
+    text = "As there [Featherstone 2008,\n sec. 7.3; Kruskal 1956]."
+    assert list(citations(text)) == ["Featherstone 2008", "Kruskal 1956"]
 
 
 SAMPLE = '''
