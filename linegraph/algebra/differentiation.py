@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from linegraph.algebra.scalar import Scalar
 
 Symbol = tuple[str, Any]
-"""The argument and the place that name a symbol."""
+"""A symbol as (argument, place)."""
 
 Gradient = dict[Symbol, "Scalar"]
 
 SMALLEST = 1e-37
-"""Keeps a quotient of zeros zero."""
+"""Added to divisors so that a quotient of zeros is zero."""
 
 
 class Calculus:
@@ -204,7 +204,7 @@ _STEEP: dict[str, Callable[[Dag, Node], Scalar]] = {
     "asin": lambda dag, node: dag.sqrt(1 - node.a * node.a),
     "acos": lambda dag, node: dag.sqrt(1 - node.a * node.a),
 }
-"""Functions whose slope is infinite at the end of their range, with what it is divided by."""
+"""Functions whose slope is infinite at an end of their domain, with the divisor of the slope."""
 
 
 class TermSizes:

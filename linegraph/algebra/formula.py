@@ -47,7 +47,7 @@ VECTORS = (
     *("force", "torque"),
 )
 VARIABLES = (*VECTORS, "across", "through")
-"""Variables of edges and points: in outputs they may be named."""
+"""Variables of edges and points, which outputs may name."""
 
 _SIGNS = {ast.UAdd: "+", ast.USub: "-"}
 _OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from linegraph.algebra.scalar import Scalar
 
 LARGEST_NUMBER = 4096
-"""Bits of an exact power."""
+"""The largest number of bits of an exact power."""
 
 
 def quotient(a: Scalar, b: Scalar) -> Scalar:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 PRIME = 2**61 - 1
 CONSTANT = "c"
-"""The argument of symbols that stand for a number, which is the text of their place."""
+"""The argument of symbols that represent a number, given by the text of their place."""
 
 Row = dict[Any, int]
 """A sparse row of residues."""

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 EPS = 2.3e-16
 LOOSE = 16
-"""How many times its bound an error may be."""
+"""The factor by which an error may exceed its bound."""
 
 LARGEST = 64
-"""Larger integers are no coincidence worth looking for."""
+"""Larger values are not compared with integers."""
 
 WEAK = 0.2
-"""An entry smaller than this share of what is alike in its row is no pivot while there are others."""
+"""An entry smaller than this fraction of comparable ones in its row is a pivot only if there is no other."""
 
 Row = list[Any]
 

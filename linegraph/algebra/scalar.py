@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any, TypeAlias
 
 Scalar: TypeAlias = Any
-"""A Python number, a DAG node or a sympy expression: whatever + - * / work on.
+"""A Python number, a DAG node, a SymPy expression or another type with + - * /.
 
-To the type checker it is `Any`: numbers, nodes and sympy expressions have no common base class, and mypy has
-no protocol that all three satisfy.
+For the type checker it is `Any`: numbers, nodes and SymPy expressions have no common base class, and there is
+no protocol in mypy that all three satisfy.
 """

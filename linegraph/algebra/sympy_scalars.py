@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from linegraph.algebra.scalar import Scalar
 
 Expr: TypeAlias = Any
-"""A sympy expression; sympy carries no types."""
+"""A SymPy expression; SymPy has no type annotations."""
 
 RENAMED = {"abs": "Abs", "min": "Min", "max": "Max"}
-"""Functions that sympy calls otherwise."""
+"""Functions whose name differs from SymPy's."""
 
 OURS = {theirs: ours for ours, theirs in RENAMED.items()}
 

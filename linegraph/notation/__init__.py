@@ -1,9 +1,9 @@
-"""How formulas look: in LaTeX, in MathML and as plain text, the same names and the same order in all three.
+"""Formulas in LaTeX, in MathML and as plain text, with the same names and the same order in all three.
 
-names, apart  Greek letters, subscripts, dots, words; no two alike
-tree          what is meant, and the order of factors and summands
-expressions   from sympy to trees
-writing, latex, mathml, plain
+names, apart                        Greek letters, subscripts, dots and words; no two names look alike
+tree                                formulas as trees, and the order of factors and summands
+expressions                         trees from SymPy expressions
+writing, latex, mathml, plain       the writers
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 def init_printing(derivation: Derived | None = None) -> None:
-    """Let notebooks show all sympy objects in this notation.
+    """Let notebooks show all SymPy objects in this notation.
 
     Args:
-        derivation: whose names to look up; without one endings tell: ``hinge_dot`` is a rate.
+        derivation: whose names are looked up. Without one, endings decide: ``hinge_dot`` is a rate.
     """
     from linegraph.notation.printing import install
 

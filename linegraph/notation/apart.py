@@ -1,4 +1,4 @@
-"""No two symbols of a derivation look alike, whatever they are written in."""
+"""Makes names look different from each other in every output format."""
 
 from __future__ import annotations
 
@@ -14,7 +14,13 @@ if TYPE_CHECKING:
 
 
 def told_apart(found: dict[str, Name]) -> dict[str, Name]:
-    """Names that look alike as the words they are; numbered where words look alike, too.
+    """Names of which no two look alike in any format.
+
+    Names that look alike are written as the words that they are in the model; where the words look alike,
+    too, they are numbered.
+
+    Args:
+        found: the look of each symbol, by its name in the model.
 
     Example:
         >>> from linegraph.notation.names import shaped
@@ -35,7 +41,7 @@ def told_apart(found: dict[str, Name]) -> dict[str, Name]:
 
 
 def _alike(found: dict[str, Name]) -> set[str]:
-    """Those that some writer writes as it writes another one."""
+    """The names that some writer writes in the same way as another name."""
     alike: set[str] = set()
     for writer in (Plain(), Latex(), MathMl()):
         looks: dict[str, list[str]] = {}

@@ -1,4 +1,4 @@
-"""From sympy's expressions to trees, factored forms kept as they are."""
+"""Trees from SymPy expressions. Factored forms stay factored."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 DIGITS = 6
-"""Significant digits of numbers that are not whole."""
+"""Significant digits of numbers that are not integers."""
 
 RENAMED = {"Abs": "abs", "Max": "max", "Min": "min", "log": "ln"}
-"""Functions that sympy calls otherwise."""
+"""Functions whose name differs from SymPy's."""
 
 
 def number(x: Any) -> Math:
-    """A number as it is written: six digits, no zeros at the end, powers of ten for what is far from 1.
+    """The tree of a number: six digits, no trailing zeros, powers of ten for numbers far from 1.
 
     Example:
         >>> number(2.50), number(-3)
@@ -53,17 +53,17 @@ def number(x: Any) -> Math:
 
 
 class Expressions:
-    """Turns sympy expressions into trees.
+    """Converts SymPy expressions to trees, each subexpression once.
 
     Args:
-        name: the look of a symbol's name.
-        other: what to write for what no tree is known for.
+        name: gives the look of a symbol from its name.
+        other: writes expressions for which there is no tree; by default the name of their class.
     """
 
     def __init__(
         self, name: Callable[[str], Name], other: Callable[[Any], Raw] | None = None
     ) -> None:
-        """Nothing is known yet."""
+        """Start without known expressions."""
         self._name = name
         self._other = other or (lambda e: Raw(rf"\mathtt{{{type(e).__name__}}}", str(e)))
         self._known: dict[Any, Math] = {}
@@ -103,7 +103,7 @@ class Expressions:
         return self._other(e)
 
     def _product(self, e: Any) -> Math:
-        """A coefficient, factors, and what they are divided by."""
+        """A coefficient, the factors, and the divisors in one fraction."""
         above: list[Math] = []
         below: list[Math] = []
         front: Math = ONE
@@ -154,7 +154,7 @@ class Expressions:
         return FunctionCall(RENAMED.get(name, name), tuple(self(a) for a in e.args))
 
     def _derivative(self, e: Any) -> Math:
-        """Dots over functions of the time."""
+        """A time derivative as dots over the function's name."""
         found = self(e.expr)
         by = [(str(variable), int(count)) for variable, count in e.variable_count]
         if not isinstance(found, Name) or any(variable != "t" for variable, _ in by):
@@ -165,7 +165,7 @@ class Expressions:
 
 
 def _of_time(e: Any) -> bool:
-    """Whether it is a function of the time alone that has no law."""
+    """Whether an expression is an undefined function of the time t alone."""
     undefined = "AppliedUndef" in [kind.__name__ for kind in type(e).__mro__]
     return undefined and [str(a) for a in e.args] == ["t"]
 

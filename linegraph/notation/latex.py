@@ -1,4 +1,4 @@
-"""Formulas in LaTeX, for amsmath; no text of a model gets in unescaped."""
+"""Formulas in LaTeX with amsmath. All text from a model is escaped."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ _BEFORE = {"δ": r"\delta ", "Δ": r"\Delta "}
 
 
 def escaped(text: str) -> str:
-    r"""Any text for LaTeX's text mode: printable, one line, nothing in it a command.
+    r"""Any text for LaTeX's text mode: printable, on one line, without commands.
 
     Example:
         >>> escaped("50 % of a_1")
@@ -92,13 +92,13 @@ def _greek(letter: str) -> str:
 
 
 class Latex(Writer):
-    """Writes LaTeX."""
+    """Writes a tree as LaTeX for math mode."""
 
     minus = "-"
     comma = r",\allowbreak\ "
 
     def name(self, name: Name) -> str:
-        """Letters in italics, words as one name, subscripts upright where they are words."""
+        """A letter in italics or a word as one name, with accents; subscripts that are words are upright."""
         text = self._letter(name.letter)
         if name.bold:
             text = rf"\boldsymbol{{{text}}}"
@@ -135,11 +135,11 @@ class Latex(Writer):
     dot = r" \cdot "
 
     def ten(self, exponent: str) -> str:
-        """With an exponent."""
+        """A power of ten with its exponent raised."""
         return f"10^{{{exponent}}}"
 
     def between(self, left: Math, right: Math, sign: str) -> str:
-        """Nothing between letters, a thin space beside words."""
+        """Nothing between letters, a thin space beside words, a dot between numbers."""
         if sign:
             return f" {_SIGNS.get(sign, sign)}"
         if isinstance(left, Numeral) and isinstance(right, Numeral):
@@ -147,17 +147,17 @@ class Latex(Writer):
         return r"\," if _wide(left) or _wide(right) else " "
 
     def related(self, sign: str) -> str:
-        """What stands between two sides."""
+        """The relation sign between two sides, as a LaTeX command."""
         return f" {_SIGNS.get(sign, sign)} "
 
     def quotient(self, above: Math, below: Math) -> str:
-        """A fraction; a plain one of numbers is small."""
+        """A fraction; a small one if it is of two numbers."""
         small = isinstance(above, Numeral) and isinstance(below, Numeral)
         command = r"\tfrac" if small else r"\frac"
         return rf"{command}{{{self.whole(above)}}}{{{self.whole(below)}}}"
 
     def raised(self, base: str, exponent: Math) -> str:
-        """An exponent."""
+        """A base with its exponent raised."""
         inner = self.whole(exponent)
         if exponent == TRANSPOSED:
             inner = r"\mathsf{T}"
@@ -168,11 +168,11 @@ class Latex(Writer):
         )
 
     def root(self, of: Math) -> str:
-        """Under its sign."""
+        """A square root under its sign."""
         return rf"\sqrt{{{self.whole(of)}}}"
 
     def call(self, name: str, arguments: Sequence[Math], *, bare: bool) -> str:
-        """A function."""
+        """A function of its arguments, an absolute value between bars."""
         return self._called(self._function(name), arguments, bare)
 
     def called_power(self, call: FunctionCall, exponent: Math, *, bare: bool) -> str:
@@ -195,18 +195,18 @@ class Latex(Writer):
         return f"\\{name}" if name in _FUNCTIONS else rf"\operatorname{{{escaped(name)}}}"
 
     def grid(self, rows: Sequence[Sequence[str]]) -> str:
-        """In brackets."""
+        """A matrix in square brackets."""
         lines = r" \\ ".join(" & ".join(row) for row in rows)
         return rf"\begin{{bmatrix}} {lines} \end{{bmatrix}}"
 
     def over(self, sign: str, under: str, body: Math) -> str:
-        """The operator and what it runs over."""
+        """An operator with its range as a subscript."""
         low = rf"_{{\text{{{escaped(under)}}}}}" if under else ""
         inner = self.held(body, ATOM if sign == "d/dt" else SUM)
         return f"{_OVER.get(sign, sign)}{low} {inner}"
 
     def raw(self, tree: Raw) -> str:
-        """As it came."""
+        """The LaTeX of another printer, unchanged."""
         return tree.latex
 
 

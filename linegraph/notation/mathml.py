@@ -1,4 +1,4 @@
-"""Formulas in MathML's presentation elements, those of MathML Core: what browsers draw by themselves."""
+"""Formulas in the presentation elements of MathML Core, which browsers draw without a script."""
 
 from __future__ import annotations
 
@@ -23,32 +23,37 @@ _BOLD = {
     )
     for k in range(count)
 }
-"""Letters and their bold italics, which fonts of mathematics have as letters of their own."""
+"""Letters and their bold italic forms, separate characters in mathematical fonts."""
 
 THIN = '<mspace width="0.17em"/>'
 
 
 def element(tag: str, text: str) -> str:
-    """An element around any text."""
+    """An element that contains a text, which is escaped.
+
+    Args:
+        tag: name of the element.
+        text: any text.
+    """
     return f"<{tag}>{escape(visible(text), quote=False)}</{tag}>"
 
 
 class MathMl(Writer):
-    """Writes the inside of a ``math`` element."""
+    """Writes a tree as the content of a ``math`` element."""
 
     minus = '<mo form="prefix">−</mo>'
     comma = "<mo>,</mo>"
 
     def bracketed(self, text: str) -> str:
-        """In brackets that do not grow, so that a formula may be broken between them."""
+        """Round brackets that do not stretch, so that a line may be broken between them."""
         return f'<mo stretchy="false">(</mo>{text}<mo stretchy="false">)</mo>'
 
     def one(self, text: str) -> str:
-        """A single element."""
+        """A text as a single element, in a row if it is several."""
         return text if _single(text) else f"<mrow>{text}</mrow>"
 
     def name(self, name: Name) -> str:
-        """Letters in italics, words as one name, subscripts upright where they are words."""
+        """A letter in italics or a word as one name, with its dots; subscripts that are words are upright."""
         text = self._letter(name.letter, name.bold)
         if name.dots:
             dots = _DOTS[min(name.dots, 3)]
@@ -75,7 +80,7 @@ class MathMl(Writer):
         return element("mn" if text.isdigit() else "mi", text)
 
     def number(self, text: str) -> str:
-        """A number."""
+        """A number, with a power of ten if it has an exponent."""
         mantissa, _, exponent = text.partition("e")
         if not exponent:
             return f"<mn>{text}</mn>"
@@ -86,11 +91,11 @@ class MathMl(Writer):
         return f"<mrow><mn>{mantissa}</mn><mo>·</mo>{power}</mrow>"
 
     def signed(self, negative: bool) -> str:
-        """A sign between summands, as such even at the start of a line."""
+        """The sign between two summands, infix even at the start of a line."""
         return f'<mo form="infix">{"−" if negative else "+"}</mo>'
 
     def between(self, left: Math, right: Math, sign: str) -> str:
-        """A thin space beside words, the sign of multiplication between numbers."""
+        """A thin space beside words, a dot between numbers, else an invisible multiplication sign."""
         if sign:
             return f"<mo>{sign}</mo>"
         if isinstance(left, Numeral) and isinstance(right, Numeral):
@@ -98,26 +103,26 @@ class MathMl(Writer):
         return THIN if _wide(left) or _wide(right) else "<mo>\u2062</mo>"
 
     def related(self, sign: str) -> str:
-        """What stands between two sides."""
+        """The relation sign between two sides."""
         return f'<mo form="infix">{escape(sign)}</mo>'
 
     def quotient(self, above: Math, below: Math) -> str:
-        """A fraction."""
+        """A fraction, with a line between its parts."""
         return f"<mfrac>{self.one(self.whole(above))}{self.one(self.whole(below))}</mfrac>"
 
     def raised(self, base: str, exponent: Math) -> str:
-        """An exponent."""
+        """A base with its exponent raised."""
         above = self.one(self.whole(exponent))
         if exponent == TRANSPOSED:
             above = '<mi mathvariant="normal">T</mi>'
         return f"<msup>{self.one(solid(base))}{above}</msup>"
 
     def root(self, of: Math) -> str:
-        """Under its sign."""
+        """A square root under its sign."""
         return f"<msqrt>{self.whole(of)}</msqrt>"
 
     def call(self, name: str, arguments: Sequence[Math], *, bare: bool) -> str:
-        """A function."""
+        """A function of its arguments, an absolute value between bars."""
         if name == "abs":
             inner = self.whole(arguments[0])
             return f'<mrow><mo stretchy="false">|</mo>{inner}<mo stretchy="false">|</mo></mrow>'
@@ -136,14 +141,14 @@ class MathMl(Writer):
         return named + solid_bracket(self.comma.join(self.whole(a) for a in arguments))
 
     def grid(self, rows: Sequence[Sequence[str]]) -> str:
-        """In brackets."""
+        """A matrix in square brackets."""
         lines = "".join(
             f"<mtr>{''.join(f'<mtd>{cell}</mtd>' for cell in row)}</mtr>" for row in rows
         )
         return f"<mrow><mo>[</mo><mtable>{lines}</mtable><mo>]</mo></mrow>"
 
     def over(self, sign: str, under: str, body: Math) -> str:
-        """The operator and what it runs over."""
+        """An operator with its range underneath."""
         inner = self.held(body, ATOM if sign == "d/dt" else SUM)
         if sign == "d/dt":
             first, second = ("<mi>d</mi>", "<mrow><mi>d</mi><mi>t</mi></mrow>")
@@ -152,17 +157,17 @@ class MathMl(Writer):
         return (f"<munder>{shown}{element('mtext', under)}</munder>" if under else shown) + inner
 
     def raw(self, tree: Raw) -> str:
-        """As text."""
+        """The plain text of another printer."""
         return element("mtext", tree.text)
 
 
 def solid_bracket(text: str) -> str:
-    """Brackets around an argument."""
+    """Round brackets that do not stretch, around an argument."""
     return f'<mo stretchy="false">(</mo>{text}<mo stretchy="false">)</mo>'
 
 
 def _single(text: str) -> bool:
-    """Whether a text is exactly one element."""
+    """Whether a text consists of exactly one element."""
     if not text.startswith("<") or not text.endswith(">"):
         return False
     depth = 0

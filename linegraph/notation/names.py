@@ -1,4 +1,4 @@
-"""How the names of a model look: Greek letters, subscripts, dots, words."""
+"""The look of a model's names: Greek letters, subscripts, dots and words."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _LETTER_NAMES = (
     "Omega",
 )
 GREEK = dict(zip(_LETTER_NAMES, "αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ", strict=True))
-"""Names of letters and the letters."""
+"""Greek letters by their names."""
 
 LATEX_GREEK = {letter: f"\\{name}" for name, letter in GREEK.items()}
 
@@ -39,7 +39,7 @@ _TWIST = re.compile(r"(.+)_([vw])([xyz])")
 _RATE_OF = re.compile(r"der\((.+)\)")
 
 LONGEST_DOTTED = 3
-"""A word of so many letters still carries a dot."""
+"""The most letters of a word that a dot is set over."""
 
 SUFFIXES = {
     "angle": ("φ", ()),
@@ -61,11 +61,11 @@ SUFFIXES = {
     "wy": ("ω", ("y",)),
     "wz": ("ω", ("z",)),
 }
-"""What the coordinates of a joint with several of them end with, and how they are written."""
+"""Endings of the coordinates of a joint with several of them: letter and subscripts."""
 
 
 def shaped(text: str) -> Name:
-    """The look of a name that nothing is known of.
+    """The look of a name by its spelling alone.
 
     Example:
         >>> shaped("m1").subs, shaped("J_axial").subs, shaped("theta").letter, shaped("hinge").letter
@@ -84,7 +84,7 @@ def shaped(text: str) -> Name:
 
 
 def lower(text: str) -> str:
-    """A word as a subscript: Greek letters as such, the number of a letter as a subscript of its own.
+    """A word as a subscript: names of Greek letters as letters, a number after a letter as its own subscript.
 
     Example:
         >>> lower("theta"), lower("theta2"), lower("f1"), lower("link1"), lower("hinge")
@@ -97,7 +97,7 @@ def lower(text: str) -> str:
 
 
 def guessed(text: str) -> Name:
-    """The look of a name where no derivation says what it is: endings tell."""
+    """The look and the role of a name without a derivation, guessed by its ending and its letter."""
     rate = _RATE_OF.fullmatch(text)
     if rate:
         return guessed(rate[1]).rate()
@@ -112,7 +112,7 @@ def guessed(text: str) -> Name:
 
 
 def names_of(derivation: Derived) -> dict[str, Name]:
-    """The look of every symbol of a derivation; two may look alike yet."""
+    """The look of every symbol of a derivation, by the symbol; some may still look alike."""
     found: dict[str, Name] = {}
     tree, model = derivation.structure, derivation.system
     for place, parameter in enumerate(model.parameters.values()):
@@ -148,7 +148,7 @@ def names_of(derivation: Derived) -> dict[str, Name]:
 
 
 def _dependent(model: System, owners: dict[str, tuple[str, str]], found: dict[str, Name]) -> None:
-    """Coordinates of joints that are chords or follow others: no state, but they are spoken of."""
+    """Enter the coordinates of chords and of followers, which are no states but occur in reports."""
     for joint in model.joints:
         own = {quantity.name for quantity in joint.positions()}
         for quantity in joint.positions():
@@ -163,7 +163,7 @@ def _dependent(model: System, owners: dict[str, tuple[str, str]], found: dict[st
 
 
 def _coordinate(name: str, owners: dict[str, tuple[str, str]]) -> Name:
-    """A letter where the name has one; of a word an entry of q: a dot over a long word is not read."""
+    """A letter if the name has one; a long word becomes an entry of q, since a dot over it is overlooked."""
     joint, suffix = owners.get(name, ("", ""))
     if suffix in SUFFIXES and name != joint:
         letter, subs = SUFFIXES[suffix]
@@ -176,7 +176,7 @@ def _coordinate(name: str, owners: dict[str, tuple[str, str]]) -> Name:
 
 
 def _multipliers(derivation: Derived, found: dict[str, Name]) -> dict[str, Name]:
-    """Those of joints by their component and which reaction it is, all others by their name."""
+    """Enter the multipliers: of a joint by its component and reaction, all others by their names."""
     tree: Any = derivation.structure
     names: list[tuple[str, tuple[str, ...]]] = []
     for closure in tree.closures:

@@ -1,4 +1,4 @@
-"""How the expressions of a derivation look."""
+"""The notation of one derivation in all output formats."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 
 class Notation:
-    """How the expressions of a derivation look, or of any model where none is given.
+    """The look of a derivation's expressions, or of any expressions if no derivation is given.
+
+    Args:
+        derivation: whose symbols are looked up.
 
     Example:
         >>> from sympy import symbols, sin
@@ -28,12 +31,12 @@ class Notation:
     """
 
     def __init__(self, derivation: Derived | None = None) -> None:
-        """Look up what its symbols stand for."""
+        """Look up the names of the derivation and make them look different from each other."""
         self.names: dict[str, Name] = {} if derivation is None else told_apart(names_of(derivation))
         self.tree = Expressions(self.name)
 
     def name(self, text: str) -> Name:
-        """The look of a symbol."""
+        """The look of a symbol, given its name; of ``der(x)`` x with one more dot."""
         if text not in self.names:
             inner = text.removeprefix("der(").removesuffix(")")
             if f"der({inner})" == text and inner in self.names:
@@ -43,18 +46,18 @@ class Notation:
         return self.names[text]
 
     def latex(self, expression: Any) -> str:
-        """An expression, a matrix or an equation in LaTeX."""
+        """A SymPy expression, matrix or equation in LaTeX, for math mode."""
         return Latex()(self.tree(expression))
 
     def mathml(self, expression: Any) -> str:
-        """The same as a ``math`` element."""
+        """A SymPy expression, matrix or equation as a ``math`` element."""
         return math_element(self.tree(expression))
 
     def text(self, expression: Any) -> str:
-        """The same as plain text."""
+        """A SymPy expression, matrix or equation as plain text."""
         return Plain()(self.tree(expression))
 
 
 def math_element(tree: Math) -> str:
-    """A tree as an element to stand among words."""
+    """A tree as a ``math`` element in running text."""
     return f"<math>{MathMl()(tree)}</math>"

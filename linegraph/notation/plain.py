@@ -1,6 +1,6 @@
 """Formulas as plain text: ``(J + l²·m)·a″ + g·l·m·sin(a) = 0``.
 
-Every product has its sign and every function its brackets, so that the text says one thing only.
+Every product has its sign and every function its brackets, so that the text is unambiguous.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ PRIMES = ("", "′", "″", "‴")
 
 
 class Plain(Writer):
-    """Writes plain text."""
+    """Writes a tree as plain text."""
 
     multiplied = "·"
     minus = "−"
     fractions = False
 
     def name(self, name: Name) -> str:
-        """Digits as subscripts, all else behind ``_``; primes for dots."""
+        """A name with digits as subscripts, other subscripts after ``_``, and primes for dots."""
         subs = [visible(sub) for sub in name.subs]
         if (len(subs) == 1 and subs[0].isascii() and subs[0].isdigit()) or digits(subs):
             tail = "".join(subs).translate(SUBSCRIPTS)
@@ -44,31 +44,31 @@ class Plain(Writer):
         return f"{name.before}{visible(name.letter)}{tail}{dots}"
 
     def ten(self, exponent: str) -> str:
-        """With a superscript."""
+        """A power of ten with its exponent as superscript."""
         return f"10{exponent.translate(SUPERSCRIPTS)}"
 
     def signed(self, negative: bool) -> str:
-        """A sign between summands."""
+        """The sign between two summands, with spaces."""
         return " − " if negative else " + "
 
     def quotient(self, above: Math, below: Math) -> str:
-        """With a stroke."""
+        """A fraction with a slash."""
         top, bottom = self.held(above, POWER), self.held(below, POWER)
         return solid(f"{top}/{bottom}")
 
     def raised(self, base: str, exponent: Math) -> str:
-        """Whole powers as superscripts."""
+        """A base with its exponent, an integer as superscript."""
         text = self.whole(exponent).replace("−", "-")
         if text.removeprefix("-").isdigit() or text == "T":
             return base + text.translate(SUPERSCRIPTS)
         return f"{base}^{self.bracketed(self.whole(exponent))}"
 
     def root(self, of: Math) -> str:
-        """With its sign."""
+        """A square root with brackets after its sign."""
         return f"√({self.whole(of)})"
 
     def call(self, name: str, arguments: Sequence[Math], *, bare: bool) -> str:
-        """Always with brackets."""
+        """A function with its arguments in brackets."""
         return f"{name}({', '.join(self.whole(a) for a in arguments)})"
 
     def called_power(self, call: FunctionCall, exponent: Math, *, bare: bool) -> str:
@@ -79,17 +79,17 @@ class Plain(Writer):
         return self.raised(self.bracketed(self.write(call)), exponent)
 
     def grid(self, rows: Sequence[Sequence[str]]) -> str:
-        """Row by row; a column by commas."""
+        """A matrix row by row, separated by semicolons; a column as (x, y, z)."""
         if all(len(row) == 1 for row in rows):
             return f"({', '.join(row[0] for row in rows)})"
         return f"[{'; '.join(', '.join(row) for row in rows)}]"
 
     def over(self, sign: str, under: str, body: Math) -> str:
-        """The operator and what it runs over."""
+        """An operator with its range after ``_``."""
         low = f"_{under}" if under else ""
         inner = self.held(body, ATOM if sign == "d/dt" else SUM)
         return f"{sign}{low}{'' if inner.startswith('(') else ' '}{inner}"
 
     def raw(self, tree: Raw) -> str:
-        """As text."""
+        """The plain text of another printer."""
         return visible(tree.text)

@@ -1,4 +1,4 @@
-"""sympy's own printer with this notation in it, for notebooks."""
+"""SymPy's own printer with this notation in it, for notebooks."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ OURS = (Add, Mul, Pow, Symbol, Rational, Function, Derivative, Equality, MatrixB
 
 
 class FacePrinter(LatexPrinter):  # type: ignore[misc]
-    """sympy's printer; names, sums, products and matrices are written as in reports."""
+    """SymPy's LaTeX printer, in which names, sums, products and matrices are written as in reports."""
 
     def __init__(self, notation: Notation) -> None:
-        """Keep the names."""
+        """Write with the names of a notation."""
         super().__init__()
         self._tree = Expressions(notation.name, self._others)
 
@@ -46,7 +46,7 @@ class FacePrinter(LatexPrinter):  # type: ignore[misc]
 
 
 def install(notation: Notation) -> None:
-    """Tell sympy, and IPython through it."""
+    """Set the printer of SymPy, and of IPython through it, to this notation."""
 
     def shown(expression: Any, mode: str = "plain", **options: Any) -> str:
         text = str(FacePrinter(notation).doprint(expression))

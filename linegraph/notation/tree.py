@@ -1,7 +1,7 @@
-"""Formulas as trees that say what is meant and not how it is set: the writers beside this file do that.
+"""Formulas as trees of their meaning, without their appearance, which is left to the writers.
 
-Order is decided here, once for all writers: factors as people write them (numbers, masses, lengths, then
-functions of angles, then rates), summands likewise, a positive one first. Nothing is multiplied out.
+The order is decided here, once for all writers: factors as people write them (numbers, masses, lengths, then
+functions of angles, then rates), summands likewise, with a positive one first. Nothing is expanded.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 MASS, GRAVITY, LENGTH, OTHER, COORDINATE, FUNCTION, RATE, ACCELERATION, INPUT = range(9)
-"""What a name stands for; the order of factors."""
+"""Roles of names, in the order in which factors are written."""
 
 Math: TypeAlias = (
     "Name | Numeral | Sum | Product | Fraction | Power | Root | FunctionCall | Components | Grid | "
@@ -29,11 +29,11 @@ class Name:
     Attributes:
         letter: a letter, a Greek letter, or a word that is one name.
         subs: its subscripts.
-        dots: how often it is differentiated by time.
+        dots: the number of time derivatives.
         bold: whether it is a vector or a matrix.
-        before: an operator in front of it: δ.
-        role: what it stands for.
-        place: where it stands among its like.
+        before: an operator in front of it, such as δ.
+        role: the kind of quantity, which decides its place among factors.
+        place: its place among quantities of the same role.
     """
 
     letter: str
@@ -45,7 +45,7 @@ class Name:
     place: int = 0
 
     def rate(self) -> Name:
-        """Its derivative by time."""
+        """The time derivative, with one more dot."""
         role = ACCELERATION if self.role == RATE else RATE
         return replace(self, dots=self.dots + 1, role=role)
 
@@ -55,6 +55,7 @@ class Numeral:
     """A number as it is written, without its sign, such as ``2.5`` or ``3e-5``.
 
     Attributes:
+        text: digits, with ``e`` before an exponent.
         rounded: whether digits were left out.
     """
 
@@ -64,14 +65,14 @@ class Numeral:
 
 @dataclass(frozen=True)
 class Sum:
-    """Summands, each with whether it is subtracted."""
+    """A sum: summands, each after a flag that is true if it is subtracted."""
 
     terms: tuple[tuple[bool, Math], ...]
 
 
 @dataclass(frozen=True)
 class Product:
-    """Factors; between them nothing, ``·`` or ``×``."""
+    """A product of factors, with nothing, ``·`` or ``×`` between them."""
 
     factors: tuple[Math, ...]
     sign: str = ""
@@ -79,7 +80,7 @@ class Product:
 
 @dataclass(frozen=True)
 class Fraction:
-    """A fraction."""
+    """A fraction with numerator `above` and denominator `below`."""
 
     above: Math
     below: Math
@@ -87,7 +88,7 @@ class Fraction:
 
 @dataclass(frozen=True)
 class Power:
-    """A power; the exponent may be any text, such as T of a transposed matrix."""
+    """A power; the exponent may be any tree, such as the T of a transposed matrix."""
 
     base: Math
     exponent: Math
@@ -95,14 +96,14 @@ class Power:
 
 @dataclass(frozen=True)
 class Root:
-    """A square root."""
+    """The square root of a tree."""
 
     of: Math
 
 
 @dataclass(frozen=True)
 class FunctionCall:
-    """A function of something."""
+    """A function with its arguments."""
 
     name: str
     arguments: tuple[Math, ...]
@@ -110,7 +111,7 @@ class FunctionCall:
 
 @dataclass(frozen=True)
 class Components:
-    """Components in brackets: (x, y, z)."""
+    """The components of a vector in brackets: (x, y, z)."""
 
     entries: tuple[Math, ...]
 
@@ -124,7 +125,7 @@ class Grid:
 
 @dataclass(frozen=True)
 class TwoSides:
-    """Two sides."""
+    """An equation or another relation: two sides and the sign between them."""
 
     left: Math
     sign: str
@@ -133,7 +134,7 @@ class TwoSides:
 
 @dataclass(frozen=True)
 class Over:
-    """An operator over what follows: Σ over something, or d/dt."""
+    """An operator applied to a tree: Σ over a range, or d/dt."""
 
     sign: str
     under: str
@@ -142,7 +143,7 @@ class Over:
 
 @dataclass(frozen=True)
 class Raw:
-    """What another printer has written."""
+    """The output of another printer, as LaTeX and as plain text."""
 
     latex: str
     text: str
@@ -150,7 +151,14 @@ class Raw:
 
 @dataclass(frozen=True)
 class Traits:
-    """What decides where a tree stands among others."""
+    """Properties of a tree that decide its place among others.
+
+    Attributes:
+        highest, lowest: largest and smallest role of the names in it.
+        functions: the number of functions in it.
+        rates: the number of rates and accelerations.
+        first: role and place of each name, in order.
+    """
 
     highest: int = -1
     lowest: int = OTHER
@@ -160,12 +168,12 @@ class Traits:
 
     @cached_property
     def rank(self) -> float:
-        """Of a bracket among factors: with its parameters, or behind what it contains."""
+        """The place of a bracket among factors: beside its parameters, or after the highest role in it."""
         return (self.lowest if self.highest < COORDINATE else self.highest) + 0.5
 
 
 def parts(tree: Math) -> tuple[Math, ...]:
-    """What a tree is made of."""
+    """The trees of which a tree is composed."""
     match tree:
         case Sum(terms):
             return tuple(term for _, term in terms)
@@ -191,7 +199,7 @@ def parts(tree: Math) -> tuple[Math, ...]:
 
 
 def traits(tree: Math) -> Traits:
-    """What a tree contains."""
+    """The properties that decide a tree's place."""
     if isinstance(tree, Name):
         rates = tree.role in (RATE, ACCELERATION)
         return Traits(tree.role, tree.role, 0, int(rates), ((tree.role, tree.place),))
@@ -224,7 +232,7 @@ def _factor_key(tree: Math) -> tuple[Any, ...]:
 
 
 def _term_key(tree: Math) -> tuple[Any, ...]:
-    """Accelerations, rates, the rest with constants first, numbers, inputs; shorter before longer."""
+    """Orders summands: accelerations, rates, constants, coordinates, numbers, inputs; short ones first."""
     found = traits(tree)
     kind = 3 if isinstance(tree, Numeral) else 2
     if found.highest == INPUT:
@@ -239,7 +247,7 @@ def _term_key(tree: Math) -> tuple[Any, ...]:
 
 
 def product(factors: Iterable[Math]) -> Math:
-    """Factors in order, those of products among them, too."""
+    """The product of factors, in order; products among them are merged, equal factors become powers."""
     flat: list[Math] = []
     for factor in factors:
         nested = isinstance(factor, Product) and not factor.sign
@@ -253,7 +261,7 @@ def product(factors: Iterable[Math]) -> Math:
 
 
 def _powers(factors: list[Math]) -> list[Math]:
-    """Equal factors beside each other as a power."""
+    """Equal adjacent factors as a power."""
     found: list[tuple[Math, int]] = []
     for factor in factors:
         base, count = factor, 1
@@ -268,7 +276,12 @@ def _powers(factors: list[Math]) -> list[Math]:
 
 
 def total(terms: Iterable[tuple[bool, Math]], *, ordered: bool = True) -> Math:
-    """Summands in order, a positive one first; sums among them become part of it."""
+    """The sum of terms, a positive one first; sums among them are merged.
+
+    Args:
+        terms: each after a flag that is true if it is subtracted.
+        ordered: whether terms are sorted; otherwise they stay as given.
+    """
     flat: list[tuple[bool, Math]] = []
     for negative, term in terms:
         if isinstance(term, Sum):
@@ -287,7 +300,7 @@ def total(terms: Iterable[tuple[bool, Math]], *, ordered: bool = True) -> Math:
 
 
 def negated(tree: Math) -> Math:
-    """The same with its sign turned."""
+    """The tree with the opposite sign."""
     if isinstance(tree, Sum) and len(tree.terms) == 1:
         ((negative, term),) = tree.terms
         return term if negative else Sum(((True, term),))
@@ -295,7 +308,7 @@ def negated(tree: Math) -> Math:
 
 
 def rounded(tree: Math) -> bool:
-    """Whether a number in it lacks digits."""
+    """Whether a number in the tree was rounded."""
     if isinstance(tree, Numeral):
         return tree.rounded
     return any(rounded(part) for part in parts(tree))

@@ -1,8 +1,8 @@
-"""What all writers of formulas share: brackets, signs, and where a line may be broken.
+"""What all writers of formulas share: brackets, signs, and the places where a line may be broken.
 
-A writer leaves a mark before every + and - that is not inside a fraction or an exponent; the mark says how
-many brackets are open there. All writers leave the same marks, so the width of a piece is that of its
-plain text, whatever it is written in.
+A writer leaves a mark before every + and - that is not inside a fraction or an exponent; the mark is the
+number of brackets open there. All writers leave the same marks, so that lines can be broken by the width of
+the plain text, whatever the format.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 SIDES, SUM, PRODUCT, POWER, ATOM = range(5)
-"""How tightly a tree holds together."""
+"""How tightly the parts of a tree are bound, from relations to single symbols."""
 
 DEEPEST = 7
 MARKS = re.compile("[\x01-\x08]")
@@ -43,12 +43,12 @@ SUPERSCRIPTS = str.maketrans("0123456789-T", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻ᵀ"
 
 
 def solid(text: str) -> str:
-    """Without marks: what cannot be broken."""
+    """A text without marks, which cannot be broken."""
     return MARKS.sub("", text)
 
 
 def pieces(text: str) -> list[tuple[int, str]]:
-    """What stands between marks, each with the brackets open at its start."""
+    """The texts between the marks, each with the number of brackets open at its start."""
     found, depth, start = [], 0, 0
     for mark in MARKS.finditer(text):
         found.append((depth, text[start : mark.start()]))
@@ -57,7 +57,7 @@ def pieces(text: str) -> list[tuple[int, str]]:
 
 
 def visible(text: str) -> str:
-    """Any text on one line without characters that cannot be seen or that turn the direction of others."""
+    """Any text on one line, without invisible characters and those that reverse the direction of writing."""
     if text.isprintable() and " " not in text:
         return text
     shown = "".join(
@@ -67,12 +67,12 @@ def visible(text: str) -> str:
 
 
 def digits(subs: Sequence[str]) -> bool:
-    """Whether subscripts are single digits, which need nothing between them."""
+    """Whether all subscripts are single digits, which need no comma between them."""
     return bool(subs) and all(len(sub) == 1 and sub in "0123456789" for sub in subs)
 
 
 def numbered(sub: str) -> tuple[str, str]:
-    """A subscript without the digits that are a subscript of its own, and these.
+    """A subscript split into its word and the digits that are a subscript of that word.
 
     Example:
         >>> numbered("θ₁₂"), numbered("tip")
@@ -87,13 +87,13 @@ def _code(letter: str) -> str:
 
 
 class Writer:
-    """Base of all writers: goes through a tree; what a thing looks like is each writer's own affair."""
+    """Base of all writers: walks a tree and sets brackets; each format overrides how the parts look."""
 
     multiplied = " "
-    """What stands between factors."""
+    """The text between two factors."""
 
     def __init__(self) -> None:
-        """No bracket is open."""
+        """Start with no bracket open."""
         self._depth = 0
 
     def __call__(self, tree: Math) -> str:
@@ -101,15 +101,20 @@ class Writer:
         return solid(self.marked(tree))
 
     def marked(self, tree: Math) -> str:
-        """The formula with marks where it may be broken."""
+        """The formula with marks where a line may be broken."""
         return self.held(tree, SIDES)
 
     def whole(self, tree: Math) -> str:
-        """A part that is not to be broken."""
+        """A tree that must not be broken."""
         return solid(self.held(tree, SIDES))
 
     def held(self, tree: Math, level: int) -> str:
-        """A part, in brackets where it holds together less than it must."""
+        """A tree, in brackets if it binds less tightly than its context requires.
+
+        Args:
+            tree: the tree.
+            level: the tightness that the context requires, `SIDES` to `ATOM`.
+        """
         if self.tightness(tree) >= level:
             return self.write(tree)
         self._depth += 1
@@ -118,7 +123,7 @@ class Writer:
         return self.bracketed(text)
 
     def tightness(self, tree: Math) -> int:
-        """How tightly a tree holds together."""
+        """How tightly the parts of a tree are bound, `SIDES` to `ATOM`."""
         match tree:
             case TwoSides():
                 return SIDES
@@ -179,11 +184,16 @@ class Writer:
     minus = "-"
 
     def signed(self, negative: bool) -> str:
-        """A sign between summands."""
+        """The sign between two summands."""
         return " - " if negative else " + "
 
     def product(self, factors: Sequence[Math], sign: str) -> str:
-        """Factors in a row; a function before another factor has its argument in brackets."""
+        """Factors in a row; the argument of a function before another factor gets brackets.
+
+        Args:
+            factors: in order.
+            sign: ``·`` or ``×`` between them, or nothing.
+        """
         found = []
         for k, factor in enumerate(factors):
             follows = factors[k + 1] if k + 1 < len(factors) else None
@@ -208,23 +218,28 @@ class Writer:
         return self.call(tree.name, tree.arguments, bare=False)
 
     def power(self, base: Math, exponent: Math) -> str:
-        """A power; of a function that of its name."""
+        """A power; of a function, the exponent follows the function's name.
+
+        Args:
+            base: the base.
+            exponent: the exponent.
+        """
         if isinstance(base, FunctionCall) and isinstance(exponent, Numeral):
             return self.called_power(base, exponent, bare=True)
         return self.raised(solid(self.held(base, ATOM)), exponent)
 
-    # -- what each writer says
+    # -- overridden by each format
 
     def bracketed(self, text: str) -> str:
-        """In brackets."""
+        """A text in round brackets."""
         return f"({text})"
 
     def name(self, name: Name) -> str:
-        """A name."""
+        """A name with subscripts and dots."""
         raise NotImplementedError
 
     def number(self, text: str) -> str:
-        """A number."""
+        """A number, with a power of ten if it has an exponent."""
         mantissa, _, exponent = text.partition("e")
         if not exponent:
             return text
@@ -234,47 +249,81 @@ class Writer:
     dot = "·"
 
     def ten(self, exponent: str) -> str:
-        """A power of ten."""
+        """A power of ten with this exponent."""
         raise NotImplementedError
 
     def between(self, left: Math, right: Math, sign: str) -> str:
-        """What stands between two factors."""
+        """The sign or space between two factors.
+
+        Args:
+            left: the factor before.
+            right: the factor after.
+            sign: ``·`` or ``×``, or nothing.
+        """
         return f" {sign} " if sign else self.multiplied
 
     def related(self, sign: str) -> str:
-        """What stands between two sides."""
+        """The relation sign between two sides."""
         return f" {sign} "
 
     def quotient(self, above: Math, below: Math) -> str:
-        """A fraction."""
+        """A fraction of two trees.
+
+        Args:
+            above: the numerator.
+            below: the denominator.
+        """
         raise NotImplementedError
 
     def raised(self, base: str, exponent: Math) -> str:
-        """A power."""
+        """A base with an exponent.
+
+        Args:
+            base: as written, in brackets where needed.
+            exponent: the exponent.
+        """
         raise NotImplementedError
 
     def root(self, of: Math) -> str:
-        """A square root."""
+        """The square root of a tree."""
         raise NotImplementedError
 
     def call(self, name: str, arguments: Sequence[Math], *, bare: bool) -> str:
-        """A function; `bare` where a single name needs no brackets."""
+        """A function with its arguments.
+
+        Args:
+            name: of the function.
+            arguments: its arguments.
+            bare: whether a single name needs no brackets.
+        """
         raise NotImplementedError
 
     def called_power(self, call: FunctionCall, exponent: Math, *, bare: bool) -> str:
-        """A power of a function."""
+        """A power of a function.
+
+        Args:
+            call: the function with its arguments.
+            exponent: the exponent.
+            bare: whether a single name as argument needs no brackets.
+        """
         raise NotImplementedError
 
     def grid(self, rows: Sequence[Sequence[str]]) -> str:
-        """A matrix."""
+        """A matrix, given by the written entries of its rows."""
         raise NotImplementedError
 
     def over(self, sign: str, under: str, body: Math) -> str:
-        """An operator over something."""
+        """An operator applied to a tree.
+
+        Args:
+            sign: ``Σ``, ``d/dt`` or another operator.
+            under: its range as text, or nothing.
+            body: the tree to which it applies.
+        """
         raise NotImplementedError
 
     def raw(self, tree: Raw) -> str:
-        """What another printer has written."""
+        """The output of another printer, as plain text."""
         return tree.text
 
 
