@@ -1,5 +1,5 @@
-"""What was chosen.
+"""The choice of trees, which decides the coordinates.
 
-The trees in translation and in rotation, by weights or by wish (`formulate`); bodies that turn about one
-direction only (`planarity`); coordinates relative to ground (`absolute`).
+`formulate` chooses the trees in translation and in rotation, by weights or as the user requests; `planarity`
+finds bodies that turn about one direction only; `absolute` has coordinates relative to ground.
 """

@@ -1,4 +1,4 @@
-"""Bodies measured from ground: the joints that inertia edges are, and what their coordinates are called."""
+"""Bodies measured relative to ground: the joints that replace inertia edges, and their coordinates' names."""
 
 from __future__ import annotations
 
@@ -14,23 +14,35 @@ if TYPE_CHECKING:
 
 
 def floating(body: str, stem: str) -> Free:
-    """The joint that a body's inertia edge is when it is a branch: all six freedoms against ground.
+    """The free joint for a body's inertia edge that is a branch: six freedoms relative to ground.
 
-    `stem` is what its coordinates begin with.
+    Args:
+        body: name of the body; the joint's head is its mass centre.
+        stem: the beginning of the names of its coordinates.
     """
     return Free(stem, (GROUND, f"{body}.{MASS_CENTER}"))
 
 
 def turning(joint: str, body: str, stem: str) -> Spherical:
-    """The joint that an inertia edge is in rotation: the body's orientation against ground."""
+    """The spherical joint for an inertia edge that is a branch in rotation only: orientation from ground.
+
+    Args:
+        joint: the joint that is the branch in translation.
+        body: the body beyond it.
+        stem: the beginning of the names of its coordinates.
+    """
     return Spherical(stem, (joint, body), effort=False)
 
 
 def stems_of(model: System, formulation: Formulation) -> dict[str, str]:
-    """What the coordinates of each body begin with: nothing that the model declares has such a name.
+    """For each body the beginning of its coordinates' names; empty if no body is measured relative to ground.
 
-    The body's name, or that with ``_body`` after it where one of the coordinates would meet another name, as
-    that of a free joint called like the body. None where no body is measured from ground.
+    It is the body's name, or the name with ``_body`` after it where a coordinate would have the name of
+    something else in the model, such as a free joint called like the body.
+
+    Args:
+        model: the system, whose declared names are taken.
+        formulation: its trees; names of network states are taken, too.
     """
     if not formulation.absolute and not formulation.level:
         return {}

@@ -1,9 +1,9 @@
-"""Stage 2 of mechanics: the tree in translation and the tree in rotation, which decide the coordinates.
+"""The trees in translation and in rotation of a mechanical system, which decide the coordinates (stage 2).
 
-The unknown across variables of the branches are the coordinates, so the tree is a choice and never the
-physics. A joint that is a branch gives its own coordinates, an inertia edge that is one gives a body's
-motion against ground; a joint that is a chord gives a constraint, its projected circuit equation. Unless
-the user says otherwise, the tree is the one of least weight, by this order:
+The unknown across variables of the branches are the coordinates: another tree means other coordinates, never
+other physics. A joint that is a branch contributes its own coordinates, an inertia edge that is a branch the
+motion of its body relative to ground; a joint that is a chord contributes constraints, its projected circuit
+equation. Unless the user decides otherwise, the tree of least weight is chosen, in this order:
 
     1. fewest coordinates: a joint weighs its freedoms, a prescribed one nothing, an inertia edge more than
        any joint, a force element more than anything
@@ -13,7 +13,8 @@ the user says otherwise, the tree is the one of least weight, by this order:
     5. with coordinates "automatic", absolute angles where bodies turn in a plane: an inertia edge instead of
        the hinge in rotation. By default coordinates are those of joints, as their names say
 
-Of equal joints that with the most freedoms is cut by the first rule itself: it weighs most.
+The first rule also decides which joint of a loop is cut: the one with the most freedoms, which weighs most
+and leaves the fewest constraints.
 """
 
 from __future__ import annotations
@@ -49,14 +50,14 @@ DEPTH = 0.2
 
 @dataclass(frozen=True)
 class Formulation:
-    """The chosen trees and what they mean.
+    """The chosen trees and their consequences for the mechanics.
 
     Attributes:
         translation, rotation: the trees.
-        joints: the joints that are branches in translation, and so in the kinematic tree.
+        joints: the joints that are branches in translation, hence in the kinematic tree.
         absolute: bodies whose inertia edge is a branch in both.
         level: joints that are branches in translation only, with the body beyond, whose inertia edge is the
-            branch in rotation: its orientation is measured from ground.
+            branch in rotation: its orientation is measured relative to ground.
         chords: joints that are chords in both.
         network: the scalar networks, with trees of their own.
     """
@@ -71,10 +72,15 @@ class Formulation:
 
 
 def formulate(model: System, graph: SystemGraph) -> Formulation:
-    """Choose the trees of a mechanical model.
+    """Choose the trees of a mechanical system.
+
+    Args:
+        model: the system, with the user's choices.
+        graph: its system graph.
 
     Raises:
-        ModelError: nothing holds a body, the wanted tree is none, or a joint that cannot be cut is.
+        ModelError: nothing holds a body, the requested tree is none, or a joint that must be a branch would
+            be a chord.
     """
     if not model.bodies and not model.components:
         problem = "has no bodies and no components: there is nothing to derive"
@@ -101,12 +107,12 @@ def formulate(model: System, graph: SystemGraph) -> Formulation:
 
 
 def _mechanics(graph: SystemGraph, domain: str) -> Projection:
-    """The graph of a mechanical subspace; ground alone where there is nothing else."""
+    """The graph of a mechanical subspace; ground alone if the system has no edge there."""
     return graph[domain] if domain in graph.domains else Projection(domain, (GROUND,), ())
 
 
 def _explained(error: ModelError, model: System) -> ModelError:
-    """Say which joints were wanted because they are coupled."""
+    """The error with the joints that were requested only because they are coupled."""
     coupled = [name for name in _coupled(model) if name not in model.choices.tree]
     if not coupled:
         return error
@@ -159,7 +165,15 @@ def _wanted(model: System, absolute: tuple[str, ...]) -> list[str]:
 
 
 def edge_weights(model: System, projection: Projection) -> dict[str, float]:
-    """The weight of every edge that is not a rigid arm; those weigh nothing."""
+    """The weight of every edge but rigid arms, which have weight 0.
+
+    Args:
+        model: the system.
+        projection: its graph in translation, for the distance of each edge from ground.
+
+    Returns:
+        Weights by name of edge: freedoms plus fractions less than 1 for the rules that break ties.
+    """
     acting = {e.joint for e in model.elements if isinstance(e, Element) and e.joint is not None}
     depth = _depths(projection)
     deepest = 1 + max(depth.values(), default=0)
@@ -178,7 +192,7 @@ def edge_weights(model: System, projection: Projection) -> dict[str, float]:
 
 
 def _depths(projection: Projection) -> dict[str, int]:
-    """How many edges each vertex is from ground, inertia edges left out."""
+    """The number of edges from ground to each vertex, without inertia edges."""
     near: dict[str, list[str]] = {vertex: [] for vertex in projection.vertices}
     for edge in projection.edges:
         if not edge.name.endswith("/inertia"):
@@ -198,7 +212,7 @@ def _depths(projection: Projection) -> dict[str, int]:
 
 
 def _level(model: System, translation: Topology) -> dict[str, Angle]:
-    """The joints beyond which a body's orientation is measured from ground."""
+    """The joints beyond which a body's orientation is measured relative to ground."""
     kinds = {name: model.choices.kind(name) for name in model.bodies}
     wanted = {name for name, kind in kinds.items() if kind in (ABSOLUTE_ANGLE, AUTOMATIC)}
     found = absolute_angles(model, translation, wanted) if wanted else {}
@@ -212,14 +226,14 @@ def _level(model: System, translation: Topology) -> dict[str, Angle]:
 def _rotation(
     projection: Projection, translation: Topology, level: Mapping[str, Angle]
 ) -> Topology:
-    """The tree in rotation: the same edges, but for joints whose far body stands on its inertia edge."""
+    """The tree in rotation: that in translation, with inertia edges in place of the joints in `level`."""
     names = [edge.name for edge in translation.branches if edge.name not in level]
     names += [f"{angle.body}/inertia" for angle in level.values()]
     return choose_forest(projection, roots=(GROUND,), branches=names)
 
 
 def _require_known(model: System) -> None:
-    """Refuse a wish for edges, bodies or kinds that do not exist."""
+    """Refuse choices that name edges, bodies or kinds that do not exist."""
     edges = [joint.name for joint in model.joints] + [f"{name}/inertia" for name in model.bodies]
     edges += [branch.name for branch in _network_edges(model) if not branch.port.spatial]
     for name in model.choices.tree:
@@ -258,7 +272,7 @@ def _require_followers(model: System, branches: frozenset[str]) -> None:
 
 
 def _network_of(model: System) -> Network | None:
-    """The network of a model; what derives it is imported where there is one."""
+    """The network of a system; its derivation is imported only if there is one."""
     if not model.components:
         return None
     from linegraph.networks.equations import network_of

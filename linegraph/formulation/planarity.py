@@ -1,4 +1,4 @@
-"""Which bodies turn about one direction of ground only, so that one angle tells their orientation."""
+"""Bodies that turn about one direction of ground only, so that one angle determines their orientation."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ Turns = tuple[tuple[str, int], ...]
 
 @dataclass(frozen=True)
 class Angle:
-    """How the orientation of a body beyond a joint is measured from ground.
+    """How the orientation of the body beyond a joint is measured relative to ground.
 
     Attributes:
-        body: whose orientation it is.
-        less: with one angle, what to subtract from it to get the joint's own; None for an orientation in
-            space, a quaternion.
+        body: the body.
+        less: joints with signs whose angles are to be subtracted from the angle to get the joint's own; None
+            for an orientation in space, measured by a quaternion.
     """
 
     body: str
@@ -43,10 +43,13 @@ class Angle:
 
 
 class _Pose(NamedTuple):
-    """A body with all coordinates 0: its axes, the one direction it turns about, and the angle.
+    """A body with all coordinates 0: its axes, the direction about which it turns, and its angle.
 
     Attributes:
-        about: None where nothing turns it; `spatial` where more than one direction does.
+        axes: body components to ground components.
+        about: in ground axes; None where nothing turns it.
+        turns: its angle as a sum of joint angles.
+        spatial: whether it turns about more than one direction.
     """
 
     axes: Matrix
@@ -56,16 +59,21 @@ class _Pose(NamedTuple):
 
 
 def absolute_angles(model: System, topology: Topology, wanted: Set[str]) -> dict[str, Angle]:
-    """For each joint that reaches one of the `wanted` bodies by a turn about its origin: the angle.
+    """For each joint that reaches one of the `wanted` bodies, how its orientation is measured from ground.
 
-    A body reached by a joint that shifts keeps the joint's own coordinates, and so do prescribed and
-    coupled joints, and those that relations name.
+    The joint must turn its head about its origin. Bodies reached by a joint that shifts keep that joint's
+    coordinates, and so do those reached by prescribed and coupled joints, and by joints that relations name.
+
+    Args:
+        model: the system; directions of axes are compared at the parameters' values.
+        topology: the tree in translation.
+        wanted: names of bodies.
     """
     return _Survey(model, wanted).along(topology)
 
 
 def related(model: System) -> set[str]:
-    """The joints whose coordinates or rates a relation names: it needs them as coordinates of the tree."""
+    """The joints whose coordinates or rates a relation names; they must be coordinates of the tree."""
     names = {name for relation in model.relations for name in names_in(relation.rate)}
     return {
         joint.name
@@ -75,7 +83,7 @@ def related(model: System) -> set[str]:
 
 
 class _Survey:
-    """Follows directions from ground outward."""
+    """Follows the axes of rotation from ground outward."""
 
     def __init__(self, model: System, wanted: Set[str]) -> None:
         algebra = Floats(t=0.0)
@@ -124,7 +132,7 @@ class _Survey:
         self._poses[far_body] = pose
 
     def _sign(self, joint: Joint, near: _Pose, axis: Vector) -> int:
-        """Whether a hinge keeps a body in its plane: 1 or -1 with its axis's sense, 0 if not."""
+        """±1, with its sense, if a hinge turns its body about the direction of those before it; else 0."""
         if not isinstance(joint, Revolute) or near.spatial or joint.drive is not None:
             return 0
         cosine = dot(near.about, axis) if near.about is not None else 1.0

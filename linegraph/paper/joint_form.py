@@ -1,11 +1,11 @@
-"""The paper's matrices in joint form, multiplied out: P, H, C, S, K and the literal (13)-(15).
+"""The paper's matrices with one row and column for each joint, multiplied out: P, H, C, S, K and (13)-(15).
 
-For reading and for proving the recursive route; `orthogonality` is what gets emitted. Vectors are resolved
-in ground axes. Restated from Boiadzhiev & Lilov, "The orthogonality principle", J. Theor. Appl. Mech.
-(Sofia) XXIV(1), 1993, with one row and column for each joint; `star_form` has their star tree itself.
+They are there to be read, and to prove the recursive derivation of `dynamics.inverse_dynamics`, which is what
+gets emitted. Vectors are resolved in ground axes [Boiadzhiev and Lilov 1993]; `star_form` has their star
+tree.
 
-A moving basement, and any other joint in prescribed motion, is a link like the others. It has no row in S
-and K; its motion enters the right-hand side, as ω̇_0 in ε and as r̈_0 in G.
+A moving basement, and any other joint in prescribed motion, is a link like the others. It has no row in S and
+K; its motion enters the right-hand side, as ω̇_0 in ε and as r̈_0 in G.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ Vectors = list[list[Vector]]
 
 @dataclass(frozen=True)
 class PaperMatrices:
-    """All matrices of the paper's final equations at a state.
+    """All matrices of the paper's final equations at a state, vectors in ground axes.
 
     Attributes:
         P: joints x joints, the cutset matrix: P_kk = 1, P_kj = -1 where joint j sits on body k.
         H: its inverse: H_kj = 1 where joint k lies on the path from ground to body j.
-        C: bodies x joints of arms: C_kk from joint k to the mass centre of k, C_pk from that of p to k.
+        C: bodies x joints, arms (m): C_kk from joint k to the mass centre of k, C_pk from that of p to k.
         S, K: coordinates x joints of unit vectors, rotational and translational; zero in the columns of
             joints in prescribed motion.
         A, B: ``A v̇ = B`` without joint efforts: A is the mass matrix, -B the bias.
@@ -53,14 +53,15 @@ class PaperMatrices:
 
 
 class Resolved(NamedTuple):
-    """A link resolved in ground axes.
+    """A link at a state, resolved in ground axes.
 
     Attributes:
-        rotation: its working components to those of ground.
-        center: its mass centre from its origin.
-        inertia: about the mass centre.
-        angular: ω.
-        remainder: ε, what remains of ω̇ with v̇ = 0.
+        rotation: its working components to those of ground, 3 x 3.
+        center: its mass centre from its origin (m).
+        mass: its mass (kg).
+        inertia: its inertia tensor about the mass centre (kg m²).
+        angular: its angular velocity ω (rad/s).
+        remainder: ε, its angular acceleration at v̇ = 0 (rad/s²).
     """
 
     rotation: Matrix
@@ -78,6 +79,11 @@ def paper_matrices(state: TreeState) -> PaperMatrices:
 
         A = (S H) I (S H)^T + Λ (H m H^T) Λ^T
         B = S H (T' - I ε - ω x I ω) + Λ H F' - Λ (H m H^T) G
+
+    where F' is the weight and T' = 0 [Boiadzhiev and Lilov 1993, (13)-(15)].
+
+    Args:
+        state: the kinematic tree at a state.
 
     Raises:
         ModelError: a link without mass has a first moment, hence no mass centre.
@@ -123,14 +129,17 @@ def _topology(tree: KinematicTree) -> tuple[Integers, Integers]:
 
 
 def resolved(state: TreeState) -> list[Resolved]:
-    """Orientation, ω and ε of every link, by H^T.
+    """Orientation, ω and ε of every link in ground axes, from the root outward as by H^T.
 
-    ε_i = Σ_j H_ji w_j with w_j = ω_p x s q̇ + Σ_ab (∂s_a/∂q_b) q̇_a q̇_b, the second being the derivative of
-    the relative rotation inside a joint of several axes (W in the paper, (14)); a prescribed joint adds
-    s q̈, which is known.
+    ε_i = Σ_j H_ji w_j with w_j = ω_p x s q̇ + Σ_ab (∂s_a/∂q_b) q̇_a q̇_b. The second term is the derivative
+    of the relative rotation inside a joint of several axes, W in (14) of the paper; a prescribed joint adds s
+    q̈, which is known.
+
+    Args:
+        state: the kinematic tree at a state.
 
     Raises:
-        ModelError: a link without mass has a first moment.
+        ModelError: a link without mass has a first moment, hence no mass centre.
     """
     bodies: list[Resolved] = []
     for link, arm in zip(state.tree.links, state.arms, strict=True):
@@ -151,13 +160,16 @@ def resolved(state: TreeState) -> list[Resolved]:
 
 
 def angular_remainder(arm: Arm) -> Vector:
-    """The relative angular acceleration with v̇ = 0, seen in the head: W, and what is prescribed."""
+    """The relative angular acceleration at v̇ = 0, as seen in the head: W, and s q̈ if prescribed."""
     known = vector.combine(arm.prescribed, arm.motion.angular) if arm.prescribed else ZERO
     return add(arm.motion.angular_bias, known)
 
 
 def linear_remainder(arm: Arm) -> Vector:
-    """The relative acceleration of the head's origin with v̇ = 0, seen in the *tail*, in head axes."""
+    """The relative acceleration of the head's origin at v̇ = 0, as seen in the *tail* but in head axes.
+
+    `Motion.linear_bias` is the derivative as seen in the head; w x u is what the tail sees in addition.
+    """
     w = vector.combine(arm.rates, arm.motion.angular)
     u = vector.combine(arm.rates, arm.motion.linear)
     known = vector.combine(arm.prescribed, arm.motion.linear) if arm.prescribed else ZERO
@@ -165,10 +177,10 @@ def linear_remainder(arm: Arm) -> Vector:
 
 
 def _central(link: Link) -> tuple[Scalar, Vector, Inertia]:
-    """Mass, mass centre and central inertia; a massless link keeps its origin as centre.
+    """Mass, mass centre and central inertia; a link without mass keeps its origin as centre.
 
     Raises:
-        ModelError: it has no mass but a first moment.
+        ModelError: it has a first moment but no mass.
     """
     m, first, *_ = link.moments
     xx, xy, xz, yy, yz, zz = link.moments.inertia
@@ -194,7 +206,15 @@ def _central(link: Link) -> tuple[Scalar, Vector, Inertia]:
 
 
 def arm_vectors(state: TreeState, bodies: list[Resolved]) -> Vectors:
-    """C: from each joint to the mass centre beyond it, and to it from the centre before it."""
+    """C: the arms from each joint to the mass centre beyond it, and to it from the mass centre before it.
+
+    Args:
+        state: the kinematic tree at a state.
+        bodies: its links in ground axes.
+
+    Returns:
+        Bodies x joints, vectors in ground axes (m).
+    """
     size = len(bodies)
     c: Vectors = [[ZERO] * size for _ in range(size)]
     for k, (link, arm) in enumerate(zip(state.tree.links, state.arms, strict=True)):
@@ -206,7 +226,7 @@ def arm_vectors(state: TreeState, bodies: list[Resolved]) -> Vectors:
 
 
 def _axes(state: TreeState, bodies: list[Resolved]) -> tuple[Vectors, Vectors]:
-    """S and K: what each coordinate turns and moves at each joint."""
+    """S and K: axes of rotation and directions of translation of each coordinate at each joint."""
     tree = state.tree
     size, n = len(tree.velocities), len(bodies)
     s: Vectors = [[ZERO] * n for _ in range(size)]
@@ -221,13 +241,13 @@ def _axes(state: TreeState, bodies: list[Resolved]) -> tuple[Vectors, Vectors]:
 
 
 def _gather(s: Vectors, h: Integers) -> Vectors:
-    """S H."""
+    """The product S H."""
     n = range(len(h))
     return [[_sum(scale(h[j][i], row[j]) for j in n) for i in n] for row in s]
 
 
 def _lever(s: Vectors, h: Integers, c: Vectors, k: Vectors) -> Vectors:
-    """Λ = S x (H C) + K."""
+    """The product Λ = S x (H C) + K: how each coordinate moves the mass centres."""
     n = range(len(h))
     hc = [[_sum(scale(h[j][i], c[i][x]) for i in n) for x in n] for j in n]
     return [
@@ -237,15 +257,25 @@ def _lever(s: Vectors, h: Integers, c: Vectors, k: Vectors) -> Vectors:
 
 
 def _carried_mass(h: Integers, bodies: list[Resolved]) -> list[list[Scalar]]:
-    """H m H^T: the mass that two joints both carry."""
+    """H m H^T: the mass that two joints have in common beyond them."""
     n = range(len(h))
     return [[sum(h[x][i] * bodies[i].mass * h[y][i] for i in n) for y in n] for x in n]
 
 
 def head_remainder(state: TreeState, bodies: list[Resolved], c: Vectors, k: int) -> Vector:
-    """Acceleration of joint k's head less that of the centre before it, with v̇ = 0.
+    """The acceleration of joint k's head relative to the mass centre before it, at v̇ = 0.
 
-    With that of the arm beyond the joint it makes G_k.
+    With that of the arm beyond the joint it is G_k: ε x C + ω x (ω x C) of the parent's arm, 2 ω x u, and the
+    remainder of the joint itself.
+
+    Args:
+        state: the kinematic tree at a state.
+        bodies: its links in ground axes.
+        c: the arms C.
+        k: index of the joint.
+
+    Returns:
+        A vector in ground axes (m/s²).
     """
     out = Full(bodies[k].rotation).out
     arm = state.arms[k]
@@ -260,12 +290,17 @@ def head_remainder(state: TreeState, bodies: list[Resolved], c: Vectors, k: int)
 
 
 def turned(body: Resolved, arm: Vector) -> Vector:
-    """ε x arm + ω x (ω x arm)."""
+    """The acceleration of the end of an arm fixed on a body at v̇ = 0: ε x arm + ω x (ω x arm).
+
+    Args:
+        body: with ω and ε.
+        arm: in ground axes (m).
+    """
     return add(cross(body.remainder, arm), cross(body.angular, cross(body.angular, arm)))
 
 
 def _euler(body: Resolved) -> Vector:
-    """I ε + ω x I ω."""
+    """The torque I ε + ω x I ω."""
     return add(
         body.inertia.out(body.remainder), cross(body.angular, body.inertia.out(body.angular))
     )

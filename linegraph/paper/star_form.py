@@ -1,18 +1,13 @@
-"""The paper's equations as printed, corrected: the star tree of Figs. 10 and 11 and its (1)-(15).
+"""The paper's equations (12)-(15) on its star tree, as printed but for corrections.
 
-Boiadzhiev & Lilov, "The orthogonality principle", J. Theor. Appl. Mech. (Sofia) XXIV(1), 1993. Vertices are
-the inertial frame 0, the mass centres C_1 .. C_n and a terminal B_j for each joint. The tree is a star:
-
-    branches   2k-1: 0 -> B_k    2k: 0 -> C_k
-    chords     C_1 -> B_1, and for every other body j the pair C_p -> B_j (inner), C_j -> B_j (outer)
-
-Without branch 1, the basement's reaction, 2n-1 branches face 2n-1 chords. Corrected are P*, which the print
-does not define, Z_1, and B, where translational joints are missing. Vectors are in ground axes.
+`star_tree` describes the tree. Three things are corrected in the print [Boiadzhiev and Lilov 1993]: P*, which
+is not defined there, Z_1, and B, in which terms of translational joints are missing. Vectors are in ground
+axes.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import reduce
 from typing import TYPE_CHECKING, Any
 
@@ -26,9 +21,17 @@ from linegraph.paper.joint_form import (
     resolved,
     turned,
 )
+from linegraph.paper.star_tree import (
+    NO_TENSOR,
+    Column,
+    Integers,
+    PrintedMatrices,
+    Rows,
+    StarTree,
+)
 from linegraph.spatial import vector
 from linegraph.spatial.rotation import Full
-from linegraph.spatial.vector import ZERO, Matrix, Vector, add, cross, dot, negate, scale
+from linegraph.spatial.vector import ZERO, Vector, add, cross, dot, negate, scale
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -38,94 +41,22 @@ if TYPE_CHECKING:
     from linegraph.kinematics.links import KinematicTree
     from linegraph.kinematics.tree_state import TreeState
 
-Integers = list[list[int]]
-Column = list[Vector]
-Rows = list[Column]
-NO_TENSOR: Matrix = (ZERO, ZERO, ZERO)
-
-
-@dataclass(frozen=True)
-class StarTree:
-    """What (13)-(15) are made of, at a state. Lists run over branches or chords as noted.
-
-    Attributes:
-        branches, chords: names of the edges, "0 -> C_1" and so on; numbers are those of `bodies`.
-        bodies: for body 1, 2, ... the bodies welded into it.
-        P: branches x chords, of (2): -1 where the branch ends at the chord's tail, +1 at its head.
-        H: its inverse: on the path to the branch's end an inner chord has +1, an outer one -1.
-        P_star: max(-P, 0), which selects a chord's tail.
-        S: coordinates x chords, axes of rotation with the sign of the chord: on outer chords, negative.
-        K: coordinates x chords, directions of translation: on inner chords; of joint 1, which has none, on
-            its outer chord and negative.
-        X: chords, X_c^t: the arm from tail to head, on inner chords with the joint's translation.
-        X_r: chords, X_c^r: the angular velocity of the head less that of the tail.
-        X_slide: inner chords, K^T q̇: how fast the head slides on the tail's body.
-        W: chords, the derivative of X_c^r seen in a body it connects, with q̈ = 0.
-        W_slide: inner chords, the derivative of X_slide seen in the tail, with q̈ = 0.
-        X_1_r, X_1_r_dot: of the basement, angular velocity and acceleration.
-        X_1_ddot: acceleration of B_1, with q̈ = 0 where joint 1 slides on the basement.
-        m, I: branches, mass and central inertia; 0 at B_k.
-        Y_t, Y_r: branches, E Y_E: the external forces, weight included, and torques.
-        Y_c: coordinates, S Y_c^r + K Y_c^t: the efforts in the joints.
-    """
-
-    branches: list[str]
-    chords: list[str]
-    bodies: list[str]
-    P: Integers
-    H: Integers
-    P_star: Integers
-    S: Rows
-    K: Rows
-    X: Column
-    X_r: Column
-    X_slide: Column
-    W: Column
-    W_slide: Column
-    X_1_r: Vector
-    X_1_r_dot: Vector
-    X_1_ddot: Vector
-    m: list[Scalar]
-    I: list[Matrix]  # noqa: E741 - the paper's own letter
-    Y_t: Column
-    Y_r: Column
-    Y_c: list[Scalar]
-
-
-@dataclass(frozen=True)
-class PrintedMatrices(StarTree):
-    """The star tree with what the paper computes from it.
-
-    Attributes:
-        V: chords, ω of the tail x X_c^r: the other part of the derivative of X_c^r.
-        Z_1, Z_2, B_1, B_2, B_3: chords, as (14) abbreviates its terms.
-        A, B: ``A v̇ = B``: A is the mass matrix, -B the bias.
-    """
-
-    V: Column
-    Z_1: Column
-    Z_2: Column
-    B_1: Column
-    B_2: Column
-    B_3: Column
-    A: list[list[Scalar]]
-    B: list[Scalar]
-
 
 def printed_matrices(state: TreeState, applied: Applied | None = None) -> PrintedMatrices:
-    """The star tree at (q, v) and its equations (12)-(15).
+    """The star tree at a state and its equations (12)-(15).
 
-    The basement is ground and what only prescribed joints connect to it. `applied` are forces and torques
-    on the links besides weight, and efforts in the joints.
+    Args:
+        state: of a tree on one basement, which is ground and all that only prescribed joints connect to it.
+        applied: forces and torques on the links besides weight, and efforts in the joints; None for none.
 
     Raises:
-        ModelError: not exactly one body is on the basement; or a link without mass has a first moment.
+        ModelError: not exactly one body is on the basement, or a link without mass has a first moment.
     """
     return equations(_star_tree(state, applied))
 
 
 def equations(star: StarTree) -> PrintedMatrices:
-    """(13)-(15): A v̇ = B, term by term as printed but for the corrections.
+    """The equations (13)-(15), A v̇ = B, term by term as printed but for the corrections.
 
     With Λ = S H P* x diag X + K,
 
@@ -139,7 +70,9 @@ def equations(star: StarTree) -> PrintedMatrices:
         Z_1 = -H I H^T V                    printed as H P* x diag X Z_2, which (14) has already
         Z_2 = -H m H^T (H P* x diag X)^T V
 
-    w = (H P*)^T (X_c^r - 1 X_1^r) is of each tail, W^t is `W_slide`. Two terms of B_3 are not in print.
+    Here w = (H P*)^T (X_c^r - 1 X_1^r) is the angular velocity of each tail and W^t is `W_slide`. The last
+    two terms of B_3 are not in print; with Z_1 as printed, S H I H^T V would be missing and the term in m
+    would count twice.
     """
     h = Operators(star)
     rest = zeros(len(star.chords) - 1)
@@ -172,7 +105,7 @@ def equations(star: StarTree) -> PrintedMatrices:
 
 
 def _square_form(star: StarTree, h: Operators) -> list[list[Scalar]]:
-    """A of (13) and (15)."""
+    """A of (13) and (15), entry by entry."""
     turned_by = [h.spread(row) for row in star.S]
     moved_by = [summed(h.swept(s), k) for s, k in zip(star.S, star.K, strict=True)]
     turning = [each(vector.times, star.I, row) for row in turned_by]
@@ -185,10 +118,10 @@ def _square_form(star: StarTree, h: Operators) -> list[list[Scalar]]:
 
 
 class Operators:
-    """The products of matrices that (13)-(15) are written with, applied to columns of vectors."""
+    """The products of matrices in (13)-(15), applied to columns with one vector for each edge."""
 
     def __init__(self, star: StarTree) -> None:
-        """Prepare H^T and H P*."""
+        """Prepare H^T and H P*, both of integers."""
         self._star = star
         self._back = transposed(star.H)
         columns = transposed(star.P_star)
@@ -199,23 +132,23 @@ class Operators:
         self._tails_back = transposed(self._tails)
 
     def gathered(self, x: Column) -> Column:
-        """``H x``: from branches to chords."""
+        """``H x``: sums of a quantity of branches, for each chord over all that it carries."""
         return _product(self._star.H, x)
 
     def spread(self, x: Column) -> Column:
-        """``H^T x``: from chords to branches."""
+        """``H^T x``: sums of a quantity of chords, for each branch along the path to its end."""
         return _product(self._back, x)
 
     def mass(self, x: Column) -> Column:
-        """``H m H^T x``."""
+        """``H m H^T x``: inertia forces of accelerations x of chords, summed towards the root."""
         return self.gathered(each(scale, self._star.m, self.spread(x)))
 
     def inertia(self, x: Column) -> Column:
-        """``H I H^T x``."""
+        """``H I H^T x``: torques of angular accelerations x of chords, summed towards the root."""
         return self.gathered(each(vector.times, self._star.I, self.spread(x)))
 
     def tail(self, x: Column) -> Column:
-        """``(H P*)^T x``: what the tail of each chord has of a quantity of rotation."""
+        """``(H P*)^T x``: an angular quantity of the tail of each chord."""
         return _product(self._tails_back, x)
 
     def moment(self, x: Column) -> Column:
@@ -223,7 +156,7 @@ class Operators:
         return _product(self._tails, each(cross, self._star.X, x))
 
     def swept(self, x: Column) -> Column:
-        """``(H P* x diag X)^T x``: how arms move that turn with their tails."""
+        """``(H P* x diag X)^T x``: how the heads of arms move that turn with their tails."""
         return each(cross, self.tail(x), self._star.X)
 
 
@@ -324,7 +257,7 @@ def _topology(parents: list[int]) -> tuple[Integers, Integers]:
 
 
 def _axes(state: TreeState, bodies: list[Resolved], links: list[int]) -> tuple[Rows, Rows]:
-    """S and K."""
+    """S and K, in ground axes with the signs of the chords."""
     tree = state.tree
     chords = 2 * len(links) - 1
     s: Rows = [zeros(chords) for _ in tree.velocities]
@@ -356,17 +289,17 @@ def _basement_motion(
 
 
 def zeros(count: int) -> Column:
-    """Zeros."""
+    """A column of zero vectors, with so many entries."""
     return [ZERO] * count
 
 
 def transposed(matrix: Integers) -> Integers:
-    """Rows and columns exchanged."""
+    """A matrix of integers with rows and columns exchanged."""
     return [list(column) for column in zip(*matrix, strict=True)]
 
 
 def _product(matrix: Integers, x: Column) -> Column:
-    """A matrix of integers times a column of vectors; zeros are skipped for the sake of symbols."""
+    """A matrix of integers times a column of vectors; zeros are skipped to keep symbolic results short."""
     return [
         reduce(add, (scale(a, y) for a, y in zip(row, x, strict=True) if a != 0), ZERO)
         for row in matrix
@@ -374,20 +307,31 @@ def _product(matrix: Integers, x: Column) -> Column:
 
 
 def each(product: Callable[[Any, Vector], Vector], a: Iterable[Any], b: Column) -> Column:
-    """A product chord by chord."""
+    """A product of two columns, edge by edge.
+
+    Args:
+        product: of two entries, such as `cross`, `scale` or `times`.
+        a: the left factors: vectors, scalars or matrices.
+        b: the right factors, vectors.
+    """
     return [product(x, y) for x, y in zip(a, b, strict=True)]
 
 
 def summed(*columns: Column) -> Column:
-    """Columns added, edge by edge."""
+    """The sum of columns, edge by edge."""
     return [reduce(add, entries) for entries in zip(*columns, strict=True)]
 
 
 def negated(column: Column) -> Column:
-    """Signs turned."""
+    """A column with all signs reversed."""
     return [negate(x) for x in column]
 
 
 def projected(axes: Column, column: Column) -> Scalar:
-    """The products with a row of S or K, summed up."""
+    """The sum of scalar products with a row of S or K: the projection on one coordinate.
+
+    Args:
+        axes: the row, one vector for each chord.
+        column: forces or torques of the chords.
+    """
     return sum(dot(a, x) for a, x in zip(axes, column, strict=True))

@@ -1,7 +1,8 @@
 """The paper's inverse scheme on its star tree: every variable of every edge once v̇ is known.
 
-Boiadzhiev & Lilov (1993) say that it exists; written out it is the circuit equations forward, H^T, and the
-cutset equations back, H. For reading and for proof; `edge_variables` is what gets emitted.
+[Boiadzhiev and Lilov 1993] only mention it. Written out, it is the circuit equations forward, H^T, and the
+cutset equations back, H. It is there to be read and for proof; `dynamics.edge_variables` is what gets
+emitted.
 """
 
 from __future__ import annotations
@@ -10,9 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from linegraph.paper.star_form import (
-    Column,
     Operators,
-    PrintedMatrices,
     each,
     negated,
     summed,
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from linegraph.algebra.scalar import Scalar
+    from linegraph.paper.star_tree import Column, PrintedMatrices
 
 
 @dataclass(frozen=True)
@@ -33,10 +33,10 @@ class StarVariables:
     """Across and through variables of the star tree in motion, in ground axes.
 
     Attributes:
-        X_b_r, X_b_r_dot: branches, angular velocity and acceleration.
-        X_b_t_ddot: branches, acceleration of the branch's end.
-        Y_c_t, Y_c_r: chords, the force and the torque that a joint's chord exerts on its head.
-        Y_1_t, Y_1_r: of branch 1, the reaction of the basement.
+        X_b_r, X_b_r_dot: branches, angular velocity and acceleration of the branch's end.
+        X_b_t_ddot: branches, acceleration of the branch's end (m/s²).
+        Y_c_t, Y_c_r: chords, the force (N) and the torque (N m) that a joint's chord exerts on its head.
+        Y_1_t, Y_1_r: force and torque of branch 1, the reaction of the basement.
     """
 
     X_b_r: Column
@@ -59,8 +59,8 @@ def star_variables(star: PrintedMatrices, acceleration: Sequence[Scalar]) -> Sta
         Y_1   = -Y_{2n+1}
 
     Args:
-        star: the tree at a state.
-        acceleration: v̇.
+        star: the tree at a state, with its matrices.
+        acceleration: v̇, by coordinate.
     """
     h = Operators(star)
     rest = zeros(len(star.chords) - 1)
@@ -89,7 +89,7 @@ def star_variables(star: PrintedMatrices, acceleration: Sequence[Scalar]) -> Sta
 
 
 def _spread(rows: list[Column], v: Sequence[Scalar]) -> Column:
-    """``S^T v``: chords."""
+    """``S^T v``: relative angular velocities of the chords."""
     total = zeros(len(rows[0]))
     for row, x in zip(rows, v, strict=True):
         total = [add(y, scale(x, s)) for y, s in zip(total, row, strict=True)]
@@ -97,7 +97,7 @@ def _spread(rows: list[Column], v: Sequence[Scalar]) -> Column:
 
 
 def _at_tails(star: PrintedMatrices, x: Column) -> Column:
-    """``P* x``: what chords give to the branches at their tails."""
+    """``P* x``: a quantity of chords summed at the branches that end at their tails."""
     found = zeros(len(star.branches))
     for chord, row in enumerate(transposed(star.P_star)):
         for branch, entry in enumerate(row):

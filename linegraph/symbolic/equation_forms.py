@@ -19,7 +19,7 @@ from linegraph.ir.dag import Dag
 from linegraph.kinematics.tree_state import TreeState
 from linegraph.notation.notation import Notation
 from linegraph.paper.joint_form import PaperMatrices, paper_matrices
-from linegraph.paper.star_form import PrintedMatrices, printed_matrices
+from linegraph.paper.star_form import printed_matrices
 from linegraph.symbolic.coriolis import coriolis_matrix, gradient_along
 from linegraph.symbolic.equation_list import Equations
 from linegraph.symbolic.simplification import BUDGET, Simplifier
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from linegraph.algebra.scalar import Scalar
     from linegraph.kinematics.links import KinematicTree
     from linegraph.numeric.derived import Derived
+    from linegraph.paper.star_tree import PrintedMatrices
 
 
 class EquationForms:

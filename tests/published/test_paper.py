@@ -21,13 +21,14 @@ from linegraph.dynamics.edge_variables import InverseScheme
 from linegraph.errors import ModelError
 from linegraph.kinematics.arms import arms
 from linegraph.paper.joint_form import paper_matrices
-from linegraph.paper.star_form import PrintedMatrices, equations, printed_matrices
+from linegraph.paper.star_form import equations, printed_matrices
 from linegraph.paper.star_inverse import star_variables
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from linegraph.numeric.reference import Numeric
+    from linegraph.paper.star_tree import PrintedMatrices
 
 TOLERANCE = 1e-12
 TURNING = ("revolute", "universal", "spherical xyz", "spherical zxz")
