@@ -1,4 +1,4 @@
-"""Bodies of a model under construction, and what they and macros need of its builder."""
+"""Bodies of a model under construction, and the part of the builder that they and macros use."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Limit = TypeVar("Limit", bound="Constraint | Relation")
 
 
 class Builder(Protocol):
-    """What handles, words and macros need of a model under construction; see `builder.Model`."""
+    """The part of `builder.Model` that handles, generated methods and macros use."""
 
     snap: float
 
@@ -40,30 +40,56 @@ class Builder(Protocol):
         """The coupled joints in declared order."""
 
     def body(self, name: str, *, inertia: Any = ...) -> BodyHandle:
-        """Add a rigid body."""
+        """Add a rigid body.
+
+        Args:
+            name: unique among bodies.
+            inertia: about the mass centre, in body axes (kg m²).
+        """
 
     def add_frame(self, body: str, name: str, placement: Placement) -> str:
-        """Add a frame to a body or to ground."""
+        """Add a frame to a body or to ground.
+
+        Args:
+            body: name of the body, or "ground".
+            name: unique on it.
+            placement: the frame in the body's frame.
+
+        Returns:
+            The terminal, ``"body.frame"``.
+        """
 
     def add_joint(self, joint: Kind) -> Kind:
-        """Add a joint made elsewhere."""
+        """Add a joint that has been constructed elsewhere, and return it with its axis normalised."""
 
     def add_element(self, element: Force) -> Force:
-        """Add a force element made elsewhere."""
+        """Add a force element or a load that has been constructed elsewhere."""
 
     def add_constraint(self, limit: Limit) -> Limit:
-        """Add a constraint made elsewhere."""
+        """Add a constraint or a relation that has been constructed elsewhere."""
 
     def couple(self, joint: str | Joint, to: str | Joint, ratio: Any = 1, offset: Any = 0) -> None:
-        """Let one joint follow another."""
+        """Let one joint follow another: ``q_joint = ratio q_to + offset``.
+
+        Args:
+            joint: the follower.
+            to: the joint that it follows.
+            ratio: dimensionless between joints of the same kind.
+            offset: in the unit of the follower's coordinate.
+        """
 
     def terminals(self) -> dict[str, tuple[str, Placement]]:
-        """Every terminal a joint may be connected to."""
+        """Every terminal to which a joint may be connected, with its body and its placement there."""
 
 
 @dataclass(frozen=True)
 class BodyHandle:
-    """A body of a model under construction; stands for its own frame where a terminal is wanted."""
+    """A body of a model under construction. Used as a terminal it means the body's own frame.
+
+    Attributes:
+        model: the model to which the body belongs.
+        name: of the body.
+    """
 
     model: Builder
     name: str
@@ -83,12 +109,15 @@ class BodyHandle:
             name: unique on this body.
             at: origin in the body's frame (m).
             rpy: orientation by turns about the body's fixed x, y, z, in radians; or
-            axis: by one turn about this direction,
+            axis: by one turn about this direction in body axes,
             angle: by so many radians; or
             rotation: by the matrix whose columns are the frame's axes in body axes.
 
         Returns:
             ``"body.frame"``, to be used in `between`.
+
+        Raises:
+            ModelError: the name is taken, a number is not finite, or the orientation is none.
         """
         who = f'frame "{self.name}.{name}"'
         finite((angle,), who)
@@ -100,5 +129,5 @@ class BodyHandle:
         return self.model.add_frame(self.name, name, placement)
 
     def __str__(self) -> str:
-        """The body's own frame as a terminal."""
+        """The terminal that is the body's own frame."""
         return self.name

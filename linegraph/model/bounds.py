@@ -1,4 +1,4 @@
-"""Where a model is asked for: bounds of the states that `check` and golden vectors draw."""
+"""Bounds of the states at which `check` and golden vectors evaluate a model."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ GROUPS = ("coordinates", "velocities", "inputs", "parameters")
 
 @dataclass(frozen=True)
 class Bounds:
-    """Bounds of drawn states, as the user gives them; what is not named is drawn as by default.
+    """Bounds of drawn states; quantities that are not named are drawn from default intervals.
 
     Attributes:
-        coordinates: (low, high) of entries of q, by name.
+        coordinates: (low, high) of entries of q, by name, in their units.
         velocities: of entries of v, states of networks among them.
         inputs: of entries of u.
-        parameters: of parameters: they are drawn too, instead of having the model's value.
+        parameters: of parameters: they are drawn, too, instead of having the model's value.
         t: of the time (s); None where it is not bounded.
     """
 
@@ -37,12 +37,12 @@ class Bounds:
 
     @property
     def sometime(self) -> float:
-        """A time like any other."""
+        """A time within the bounds that is not special (s)."""
         return 0.37 if self.t is None else sum(self.t) / 2
 
 
 class Bounded:
-    """A model whose states can be bounded."""
+    """A builder whose drawn states can be bounded."""
 
     bounds: Bounds = Bounds()
 
@@ -55,17 +55,20 @@ class Bounded:
         parameters: Mapping[str, Any] | None = None,
         t: Any = None,
     ) -> Bounds:
-        """Bound the states at which `check` and golden vectors look at the equations.
+        """Bound the states at which `check` and golden vectors evaluate the equations.
 
         Args:
-            coordinates: (low, high) by name of coordinate.
+            coordinates: (low, high) by name of coordinate, in its unit.
             velocities: by name of velocity, or of a state of a network.
             inputs: by name of input.
             parameters: by name of parameter.
-            t: of the time.
+            t: of the time (s).
+
+        Returns:
+            The bounds, which replace earlier ones.
 
         Raises:
-            ModelError: what is given is no pair of finite numbers, the lower one first.
+            ModelError: a bound is not a pair of finite numbers, the lower one first.
 
         Example:
             >>> from linegraph import Model

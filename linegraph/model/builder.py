@@ -1,4 +1,4 @@
-"""The model: what the user said. The only mutable type; every door into linegraph builds one."""
+"""The builder of models: the only mutable type, which readers, macros and users fill."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from linegraph.model.bounds import Bounded
 from linegraph.model.builder_words import Shown, Terminal, adds, applies, constrains
 from linegraph.model.choices import Choices, chosen
 from linegraph.model.coupling import Coupling
-from linegraph.model.macros import add_basement, add_rotor, followers_at, locked
+from linegraph.model.macros import Macros, followers_at, locked
 from linegraph.model.outputs import Output
 from linegraph.model.snapshot import Snapshots
 from linegraph.spatial.vector import ZERO, Vector
@@ -47,12 +47,12 @@ STANDARD_GRAVITY: Vector = (0, 0, -9.81)
 SNAP = 1e-11
 
 
-class Model(Shown, Words, Bounded, Snapshots):
-    """A system of components, connected at terminals.
+class Model(Shown, Words, Macros, Bounded, Snapshots):
+    """A system of components, connected at terminals, under construction.
 
     Args:
         name: the prefix of everything emitted.
-        gravity: acceleration of free fall in ground axes (m/s^2).
+        gravity: acceleration of free fall in ground axes (m/s²).
         about: one paragraph for the head of emitted files.
         snap: rotation entries closer than this to 0, 1, -1, 1/2 or -1/2 become these exactly.
 
@@ -72,7 +72,7 @@ class Model(Shown, Words, Bounded, Snapshots):
         about: str = "",
         snap: float = SNAP,
     ) -> None:
-        """Start with ground alone."""
+        """Start with ground and no other component."""
         self.name, self.about, self.snap = name, about, snap
         self.gravity = gravity
         self.bodies: dict[str, Body] = {}
@@ -116,7 +116,7 @@ class Model(Shown, Words, Bounded, Snapshots):
 
     @property
     def gravity(self) -> Vector:
-        """Acceleration of free fall in ground axes (m/s^2); may be set, also to parameters."""
+        """Acceleration of free fall in ground axes (m/s²); may be set, also to parameters."""
         return self._gravity
 
     @gravity.setter
@@ -125,7 +125,7 @@ class Model(Shown, Words, Bounded, Snapshots):
 
     @property
     def joints(self) -> tuple[Joint, ...]:
-        """The joints in declared order: the order of coordinates."""
+        """The joints in declared order, which is the order of coordinates."""
         return tuple(self._joints.values())
 
     @property
@@ -134,17 +134,17 @@ class Model(Shown, Words, Bounded, Snapshots):
         return tuple(self._couplings.values())
 
     def parameter(self, name: str, value: Any = None, unit: str = "", about: str = "") -> Parameter:
-        """Declare a number that stays a symbol, or one that follows from earlier ones.
+        """Declare a number that stays a symbol, or one that is computed from earlier ones.
 
         Args:
-            name: unique among parameters, and no reserved word such as t or pi.
-            value: the default; or an expression of earlier parameters, as text or sympy's, which is
+            name: unique among parameters, and not a reserved word such as t or pi.
+            value: the default; or an expression of earlier parameters, as text or SymPy's, which is
                 computed wherever the name is used.
             unit: its unit, for readers.
             about: its meaning, for readers.
 
         Raises:
-            ModelError: the name is taken.
+            ModelError: the name is taken or reserved, or the expression names something else.
         """
         require_new(name, self.parameters, who := f'parameter "{name}"')
         require_symbols((name,), who)
@@ -155,10 +155,15 @@ class Model(Shown, Words, Bounded, Snapshots):
         return self.parameters.setdefault(name, Parameter(name, value, unit, about))
 
     def input(self, name: str, unit: str = "", about: str = "") -> Input:
-        """Declare an input u for use in laws of forces.
+        """Declare an input u for use in laws of forces and components.
+
+        Args:
+            name: unique among inputs, and not a reserved word.
+            unit: its unit, for readers.
+            about: its meaning, for readers.
 
         Raises:
-            ModelError: the name is taken.
+            ModelError: the name is taken or reserved.
         """
         require_new(name, self._inputs, who := f'input "{name}"')
         require_symbols((name,), who)
@@ -166,7 +171,7 @@ class Model(Shown, Words, Bounded, Snapshots):
 
     @property
     def inputs(self) -> tuple[Input, ...]:
-        """The declared inputs."""
+        """The declared inputs, in order."""
         return tuple(self._inputs.values())
 
     @property
@@ -197,14 +202,14 @@ class Model(Shown, Words, Bounded, Snapshots):
 
         Args:
             name: unique among bodies.
-            mass: kg.
-            mass_center: in the body's frame (m); default its origin.
-            inertia: (xx, yy, zz), a 3 x 3 matrix or named entries (kg m^2), in body axes, about the mass
+            mass: in kg.
+            mass_center: in the body's frame (m); by default its origin.
+            inertia: (xx, yy, zz), a 3 x 3 matrix or named entries (kg m²), in body axes, about the mass
                 centre; about the body's origin where `first_moment` is given.
             first_moment: mass times mass centre (kg m), instead of `mass_center`.
 
         Raises:
-            ModelError: the name is taken, a number is not finite, the mass is negative.
+            ModelError: the name is taken, a number is not finite, or the mass is negative.
         """
         who = f'body "{name}"'
         taken = "the name is taken; names of bodies are unique"
@@ -223,7 +228,19 @@ class Model(Shown, Words, Bounded, Snapshots):
         return BodyHandle(self, name)
 
     def add_frame(self, body: str, name: str, placement: Placement) -> str:
-        """Add a frame to a body or to ground; `BodyHandle.frame` is the friendly way."""
+        """Add a frame to a body or to ground, as `BodyHandle.frame` does more conveniently.
+
+        Args:
+            body: name of the body, or "ground".
+            name: unique on it.
+            placement: the frame in the body's frame.
+
+        Returns:
+            The terminal, ``"body.frame"``.
+
+        Raises:
+            ModelError: the name is taken on this body.
+        """
         who = f'frame "{body}.{name}"'
         frames = self.ground_frames if body == GROUND else self.bodies[body].frames
         require_new(name, (*frames, MASS_CENTER), who, "the name is taken on this body")
@@ -234,7 +251,7 @@ class Model(Shown, Words, Bounded, Snapshots):
         return f"{body}.{name}"
 
     def add_joint(self, joint: Kind) -> Kind:
-        """Add a joint made elsewhere; ``model.revolute(...)`` and its siblings are the friendly way.
+        """Add a joint that has been constructed elsewhere; ``model.revolute(...)`` is more convenient.
 
         Raises:
             ModelError: the name is taken or the axis has no length.
@@ -255,7 +272,15 @@ class Model(Shown, Words, Bounded, Snapshots):
         torque: Sequence[Any] = ZERO,
         axes: str = WORLD,
     ) -> Load:
-        """Apply a force and a torque to a body; see `Load`."""
+        """Apply a force and a torque to a body, from ground; see `Load`.
+
+        Args:
+            name: unique among joints and elements.
+            at: the terminal; the force acts at its origin.
+            force: three expressions (N).
+            torque: three expressions (N m).
+            axes: in which both are resolved, those of ground ("world") or of the terminal ("body").
+        """
         who = f'load "{name}"'
         if axes not in (WORLD, BODY):
             raise ModelError(who, f'axes are "{WORLD}" or "{BODY}", not "{axes}"')
@@ -263,10 +288,10 @@ class Model(Shown, Words, Bounded, Snapshots):
         return self.add_element(load)
 
     def add_element(self, element: Force) -> Force:
-        """Add a force element made elsewhere; ``model.spring(...)`` and its siblings are friendlier.
+        """Add a force element that has been constructed elsewhere; ``model.spring(...)`` is more convenient.
 
         Raises:
-            ModelError: the name is taken, or the element has no place or two.
+            ModelError: the name is taken, or the element has neither ends nor a joint, or both.
         """
         who = f'{element.kind} "{element.name}"'
         taken = "the name is taken; names of joints and elements are unique"
@@ -282,11 +307,16 @@ class Model(Shown, Words, Bounded, Snapshots):
         return ChainMap[str, Any](self._elements, self._joints, self._constraints, self._components)
 
     def relation(self, name: str, rate: Any) -> Relation:
-        """Constrain velocities by an expression that is zero and linear in rates; see `Relation`."""
+        """Constrain velocities by an expression that is zero and linear in rates; see `Relation`.
+
+        Args:
+            name: unique among joints, elements and constraints; its multiplier has it.
+            rate: ``a(q) v - b(q, t)`` with rates written as ``der(x)``.
+        """
         return self.add_constraint(Relation(name, rate))
 
     def add_constraint(self, limit: Limit) -> Limit:
-        """Add a constraint made elsewhere; ``model.rod(...)`` and its siblings are the friendly way.
+        """Add a constraint that has been constructed elsewhere; ``model.rod(...)`` is more convenient.
 
         Raises:
             ModelError: the name is taken.
@@ -300,10 +330,16 @@ class Model(Shown, Words, Bounded, Snapshots):
         return found
 
     def output(self, name: str, value: Any, unit: str = "", about: str = "") -> Output:
-        """Ask for a quantity in the emitted code; `dynamics.outputs` says what its expression may name.
+        """Let emitted code return a quantity by name.
+
+        Args:
+            name: unique among outputs.
+            value: an expression; `dynamics.outputs` lists the variables that it may name.
+            unit: its unit, for readers.
+            about: its meaning, for readers.
 
         Raises:
-            ModelError: the name is taken.
+            ModelError: the name is taken or reserved.
         """
         require_new(name, [known.name for known in self.outputs], f'output "{name}"')
         require_symbols((name,), f'output "{name}"')
@@ -311,7 +347,7 @@ class Model(Shown, Words, Bounded, Snapshots):
         return self.outputs[-1]
 
     def formulation(self, **choices: Any) -> Choices:
-        """Choose the tree, the coordinates and how results are shown; see `Choices`.
+        """Choose the tree, the coordinates and the axes of results; see `Choices`.
 
         Raises:
             ModelError: there is no such kind of coordinates or of axes.
@@ -319,37 +355,19 @@ class Model(Shown, Words, Bounded, Snapshots):
         self.choices = chosen(self.choices, **choices)
         return self.choices
 
-    def rotor(self, name: str, joint: str | Joint, inertia: Any, ratio: Any = 1) -> BodyHandle:
-        """Add a motor's rotor behind a gear at a revolute joint: it turns `ratio` times as fast.
-
-        A body without mass, with `inertia` (kg m^2) about the joint's axis alone, sits in the joint's tail
-        and follows its coordinate, with all that a body adds to M and h.
-
-        Raises:
-            ModelError: the joint is not a revolute joint of this model.
-        """
-        at = joint.name if isinstance(joint, Joint) else joint
-        return add_rotor(self, name, at, inertia, ratio)
-
-    def basement(self, position: Any = None, rotation: Any = None) -> BodyHandle:
-        """Add a massless body called "basement" in prescribed motion.
-
-        Args:
-            position: of its origin in ground axes (m): three expressions of t, each of which, or all at
-                once, may be "input" to come from inputs with its first two derivatives; default at rest.
-            rotation: ``{"axis": direction, "angle": expression}``, or ``{"rpy": three expressions}`` for
-                turns about ground's x, y, z in this order, or "input" for the latter; default none.
-
-        """
-        return add_basement(self, position, rotation)
-
     def couple(self, joint: str | Joint, to: str | Joint, ratio: Any = 1, offset: Any = 0) -> None:
         """Let one joint follow another: ``q_joint = ratio q_to + offset``.
 
-        The follower has no coordinate and no effort of its own.
+        The follower has neither a coordinate nor an effort of its own.
+
+        Args:
+            joint: the follower, of one freedom.
+            to: the joint that it follows, of one freedom.
+            ratio: dimensionless between joints of the same kind, else rad/m or m/rad.
+            offset: in the unit of the follower's coordinate (rad or m).
 
         Raises:
-            ModelError: the joint follows another already.
+            ModelError: the joint already follows another.
         """
         follower, master = (j.name if isinstance(j, Joint) else j for j in (joint, to))
         who = f'joint "{follower}"'
@@ -359,9 +377,11 @@ class Model(Shown, Words, Bounded, Snapshots):
         self._couplings[follower] = Coupling(follower, master, ratio, offset)
 
     def lock(self, joint: str, value: float = 0.0) -> None:
-        """Weld a joint of one freedom at a value of its coordinate (rad or m).
+        """Weld a joint of one freedom at a value of its coordinate, and with it all that follow it.
 
-        What follows the locked joint is locked with it.
+        Args:
+            joint: name of the joint.
+            value: of its coordinate (rad or m).
 
         Raises:
             ModelError: no such joint, or it has no coordinate or more than one.

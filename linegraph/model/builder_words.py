@@ -1,4 +1,4 @@
-"""The builder's words: handles of bodies, and methods made from the registers of components."""
+"""Builder methods that are generated from the registers of components."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ Ask = ParamSpec("Ask")
 
 
 class Shown(Displayed):
-    """How a model looks to the one who builds it."""
+    """The appearance of a model in notebooks and on the command line."""
 
     name: str
     bodies: dict[str, Any]
     joints: Any
 
     def __repr__(self) -> str:
-        """Its name and size."""
+        """The name, with the numbers of bodies and joints."""
         return f"<Model {self.name}: {len(self.bodies)} bodies, {len(self.joints)} joints>"
 
 
@@ -33,9 +33,9 @@ Terminal = str | BodyHandle
 
 
 def adds(kind: Callable[Concatenate[str, tuple[str, str], Ask], Kind]) -> Any:
-    """A builder method that adds a joint of one kind: the line in the register of words.
+    """The builder method for a type of joint; its docstring is that of the type.
 
-    As in a model file, `motion` prescribes the joint's motion; the joint itself calls it `drive`.
+    As in a model file, `motion` prescribes the joint's motion, which the joint itself calls `drive`.
     """
 
     def add(
@@ -57,7 +57,7 @@ def adds(kind: Callable[Concatenate[str, tuple[str, str], Ask], Kind]) -> Any:
 
 
 def applies(kind: Callable[Concatenate[str, Ask], Element]) -> Any:
-    """A builder method that adds a force element of one kind."""
+    """The builder method for a type of force element; its docstring is that of the type."""
 
     def apply(
         self: Builder,
@@ -78,7 +78,7 @@ def applies(kind: Callable[Concatenate[str, Ask], Element]) -> Any:
 
 
 def constrains(kind: Callable[Concatenate[str, tuple[str, str], Ask], Limit]) -> Any:
-    """A builder method that adds a constraint of one kind."""
+    """The builder method for a type of constraint; its docstring is that of the type."""
 
     def constrain(
         self: Builder, name: str, between: tuple[Terminal, Terminal], *args: Any, **options: Any

@@ -1,4 +1,4 @@
-"""What a user may choose of the formulation: the tree, the coordinates, and how results are shown."""
+"""What a user may choose of the formulation: the tree, the coordinates, and the axes of results."""
 
 from __future__ import annotations
 
@@ -22,14 +22,15 @@ HEAD, TAIL, GROUND_AXES = REACTION_AXES = ("head", "tail", "ground")
 
 @dataclass(frozen=True)
 class Choices:
-    """The user's wishes; what is left open is chosen automatically.
+    """The user's choices; whatever is left open is chosen automatically.
 
     Attributes:
         tree: edges that must be branches: joints by name, inertia edges as ``body/inertia``.
         coordinates: for all bodies, one of `COORDINATES`.
-        of_body: for single bodies.
+        of_body: for single bodies, by name.
         independent: the coordinates that a closed mechanism is reduced to; None for an automatic choice.
-        baumgarte: (alpha, beta) of ``φ̈ + 2 alpha φ̇ + beta² φ = 0`` (1/s) in forward dynamics; None for φ̈ = 0.
+        baumgarte: (alpha, beta) of ``φ̈ + 2 alpha φ̇ + beta² φ = 0`` (1/s) in forward dynamics; None for φ̈ =
+            0.
         reactions: one of `REACTION_AXES`.
     """
 
@@ -41,12 +42,16 @@ class Choices:
     reactions: str = HEAD
 
     def kind(self, body: str) -> str:
-        """Which of `COORDINATES` a body has."""
+        """The kind of coordinates of a body, one of `COORDINATES`."""
         return self.of_body.get(body, self.coordinates)
 
 
 def chosen(choices: Choices, **changes: Any) -> Choices:
     """Choices with some of them changed.
+
+    Args:
+        choices: as they were.
+        **changes: attributes of `Choices` with their new values.
 
     Raises:
         ModelError: there is no such kind of coordinates or of axes.

@@ -1,4 +1,4 @@
-"""Words that stand for several components: the rotor behind a gear, the basement, a locked joint."""
+"""Macros that stand for several components: the rotor behind a gear, the basement, a locked joint."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.algebra.formula import Formula
 from linegraph.components.body import GROUND
-from linegraph.components.joints import Compound, Fixed, Revolute
+from linegraph.components.joints import Compound, Fixed, Joint, Revolute
 from linegraph.components.joints.base import BY_INPUT
 from linegraph.components.joints.holding import moved
 from linegraph.components.validation import finite, nearest, vector
@@ -23,8 +23,54 @@ _AXES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
 _SLIDES = tuple(("prismatic", axis, {"name": name}) for name, axis in _AXES.items())
 
 
+class Macros:
+    """Builder methods that add several components at once."""
+
+    def rotor(
+        self: Builder, name: str, joint: str | Joint, inertia: Any, ratio: Any = 1
+    ) -> BodyHandle:
+        """Add a motor's rotor behind a gear at a revolute joint; it turns `ratio` times as fast.
+
+        The rotor is a body without mass in the joint's tail that follows the joint's coordinate. All terms of
+        a body are in M and h, the gyroscopic torque of the turning rotor included, which an inertia added to
+        the diagonal of M would miss.
+
+        Args:
+            name: of the rotor's body and joint.
+            joint: the revolute joint, or its name.
+            inertia: of the rotor about the joint's axis (kg m²); other entries are zero.
+            ratio: rotor speed by joint speed, with sign.
+
+        Raises:
+            ModelError: the joint is not a revolute joint of this model.
+        """
+        at = joint.name if isinstance(joint, Joint) else joint
+        return add_rotor(self, name, at, inertia, ratio)
+
+    def basement(self: Builder, position: Any = None, rotation: Any = None) -> BodyHandle:
+        """Add a massless body called "basement" in prescribed motion.
+
+        Args:
+            position: of its origin in ground axes (m): three expressions of t, each of which, or all at
+                once, may be "input" to come from inputs with its first two derivatives; by default at rest.
+            rotation: ``{"axis": direction, "angle": expression}``, or ``{"rpy": three expressions}`` for
+                turns about ground's x, y, z in this order (rad), or "input" for the latter; by default none.
+
+        Raises:
+            ModelError: position or rotation have another form.
+        """
+        return add_basement(self, position, rotation)
+
+
 def add_rotor(model: Builder, name: str, joint: str, inertia: Any, ratio: Any) -> BodyHandle:
-    """A body with inertia about a revolute joint's axis alone, in the joint's tail, turning `ratio` times.
+    """Add a body with inertia about a revolute joint's axis alone, in the joint's tail, following the joint.
+
+    Args:
+        model: the builder.
+        name: of the body and its joint.
+        joint: name of the revolute joint.
+        inertia: about the axis (kg m²).
+        ratio: rotor speed by joint speed, with sign.
 
     Raises:
         ModelError: the joint is not a revolute joint of this model.
@@ -42,7 +88,12 @@ def add_rotor(model: Builder, name: str, joint: str, inertia: Any, ratio: Any) -
 
 
 def add_basement(model: Builder, position: Any, rotation: Any) -> BodyHandle:
-    """A massless body on a compound joint whose motion is prescribed.
+    """Add a massless body on a compound joint whose motion is prescribed.
+
+    Args:
+        model: the builder.
+        position: three expressions of t (m), or "input", also for single ones; None for rest.
+        rotation: axis and angle, or rpy, or "input" (rad); None for none.
 
     Raises:
         ModelError: position or rotation have another form.
@@ -58,7 +109,7 @@ def add_basement(model: Builder, position: Any, rotation: Any) -> BodyHandle:
 
 
 def _turns(rotation: Mapping[str, Any]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-    """The parts and angles of a basement's rotation, from ground inward."""
+    """The parts and angles of a basement's rotation, from ground outward."""
     if not rotation:
         return (), ()
     if set(rotation) == {"axis", "angle"}:
@@ -74,7 +125,7 @@ def _turns(rotation: Mapping[str, Any]) -> tuple[tuple[Any, ...], tuple[Any, ...
 
 
 def _product(inertia: Any, a: Any, b: Any) -> Any:
-    """``inertia a b``, also where the inertia is given as text."""
+    """``inertia a b``, also for an inertia given as text."""
     factor = a * b
     if factor == 1:
         return inertia
@@ -82,7 +133,12 @@ def _product(inertia: Any, a: Any, b: Any) -> Any:
 
 
 def locked(model: Builder, name: str, value: float) -> Fixed:
-    """The fixed joint that a joint of one freedom is at a value: at its tail frame, moved.
+    """The fixed joint that replaces a joint of one freedom at a value, on a new frame of its tail's body.
+
+    Args:
+        model: the builder, to which the frame is added.
+        name: of the joint.
+        value: of its coordinate (rad or m).
 
     Raises:
         ModelError: no such joint, or it has no coordinate or more than one.
@@ -105,10 +161,15 @@ def locked(model: Builder, name: str, value: float) -> Fixed:
 
 
 def followers_at(model: Builder, name: str, value: float) -> list[tuple[str, float]]:
-    """The joints coupled to a joint that is locked, and where that leaves them.
+    """The joints coupled to a joint that is locked, with the values at which they are locked.
+
+    Args:
+        model: the builder.
+        name: of the locked joint.
+        value: of its coordinate (rad or m).
 
     Raises:
-        ModelError: a coupling is a text, whose value is not known yet.
+        ModelError: a coupling's ratio or offset is a text, whose value is not known yet.
     """
     found = []
     for coupling in model.couplings:

@@ -1,8 +1,8 @@
-"""The register of names: every symbol that a model can bring into equations, and who owns it.
+"""The register of names: every symbol that a model can bring into equations, and its owner.
 
-The register depends on the model alone, never on the formulation, so that a model that is right in one kind
-of coordinates has no clash in another. What a user declares owns its name; what a derivation adds to that
-(`symbol_names`) gives way:
+The register depends on the model alone, never on the formulation, so that a model without a clash in one kind
+of coordinates has none in another. The names that a user declares have precedence; those that a derivation
+adds (`symbol_names`) avoid them:
 
     parameters   inputs   coordinates   velocities that are no rates   rates X_dot   states of networks
     accelerations a_X   efforts u_X   multipliers X_f1, X_t1, X_drive   coordinates of bodies as a whole
@@ -35,9 +35,9 @@ class Claim(NamedTuple):
 
     Attributes:
         name: the symbol.
-        thing: what owns it, as errors call it: ``joint "hinge"``.
-        own: what the name is of its owner: ``its coordinate``; empty for the owner's own name.
-        what: the same for others: ``a coordinate of joint "hinge"``.
+        thing: the owner as errors name it: ``joint "hinge"``.
+        own: the role of the name for its owner: ``its coordinate``; empty for the owner's own name.
+        what: the role for others: ``a coordinate of joint "hinge"``.
     """
 
     name: str
@@ -47,7 +47,7 @@ class Claim(NamedTuple):
 
 
 def declared(model: System) -> list[Claim]:
-    """All names that a model declares, but for states of networks, which have to be derived."""
+    """All names that a model declares, except those of network states, which have to be derived."""
     found = [*map(parameter_claim, model.parameters)]
     found += [input_claim(given.name) for given in model.inputs]
     for joint in model.joints:
@@ -58,7 +58,7 @@ def declared(model: System) -> list[Claim]:
 
 
 def claims_of(joint: Joint) -> list[Claim]:
-    """The names of a joint: its coordinates, their rates, and velocities that are no rates."""
+    """The names of a joint: its coordinates, their rates, velocities that are no rates, and its inputs."""
     thing = f'joint "{joint.name}"'
     positions = [quantity.name for quantity in joint.positions()]
     found = [Claim(x, thing, "its coordinate", f"a coordinate of {thing}") for x in positions]
@@ -76,7 +76,7 @@ def claims_of(joint: Joint) -> list[Claim]:
 
 
 def claims_of_constraint(constraint: Constraint) -> list[Claim]:
-    """The inputs that prescribe what a constraint leads."""
+    """The inputs that prescribe a constraint's motion."""
     thing = f'{constraint.kind} "{constraint.name}"'
     given = constraint.prescribed()
     return [c for value, quantity in given for c in _prescribing(quantity.name, thing, value)]
@@ -91,22 +91,28 @@ def _prescribing(name: str, thing: str, drive: Any) -> list[Claim]:
 
 
 def parameter_claim(name: str) -> Claim:
-    """The name of a parameter."""
+    """The name that a parameter claims."""
     return Claim(name, f'parameter "{name}"', "", "a parameter")
 
 
 def input_claim(name: str) -> Claim:
-    """The name of an input."""
+    """The name that an input claims."""
     return Claim(name, f'input "{name}"', "", "an input")
 
 
 def output_claim(name: str) -> Claim:
-    """The name of an output."""
+    """The name that an output claims."""
     return Claim(name, f'output "{name}"', "", "an output")
 
 
 def clash(first: Claim, second: Claim, places: Mapping[str, int]) -> str:
-    """What is wrong with the second of two claims to a name."""
+    """The message for the second of two claims to one name.
+
+    Args:
+        first: the claim of the earlier owner.
+        second: that of the later one, which gets the error.
+        places: lines in the model file by owner.
+    """
     line = _line(first, places)
     if second.own:
         return f'{second.own} "{second.name}" has the name of {first.what}{line}; rename one'
@@ -114,7 +120,12 @@ def clash(first: Claim, second: Claim, places: Mapping[str, int]) -> str:
 
 
 def located(claim: Claim, places: Mapping[str, int]) -> str:
-    """What a name is, with the line of its owner where that is from a file."""
+    """The role of a name, with the line of its owner if that is in a file.
+
+    Args:
+        claim: the name and its owner.
+        places: lines in the model file by owner.
+    """
     return claim.what + _line(claim, places)
 
 
@@ -123,14 +134,14 @@ def _line(claim: Claim, places: Mapping[str, int]) -> str:
 
 
 def require_distinct(claims: Iterable[Claim], places: Mapping[str, int]) -> dict[str, Claim]:
-    """The owner of each name.
+    """The owner of each name, if no name has two.
 
     Args:
         claims: in the order in which things are declared.
-        places: the lines of things, where they are from a file.
+        places: lines in the model file by owner.
 
     Raises:
-        ModelError: a name has two owners; blames the later one and names both.
+        ModelError: a name has two owners; the error is that of the later one and names both.
     """
     owners: dict[str, Claim] = {}
     for claim in claims:
@@ -143,8 +154,13 @@ def require_distinct(claims: Iterable[Claim], places: Mapping[str, int]) -> dict
 def require_own(model: System, owners: Mapping[str, Claim], places: Mapping[str, int]) -> None:
     """Refuse laws of elements whose x or v could also mean something that the model declares.
 
+    Args:
+        model: the system.
+        owners: all declared names.
+        places: lines in the model file by owner.
+
     Raises:
-        ModelError: names the element, and what else has the name.
+        ModelError: names the element, and the other owner of the name.
     """
     for element in model.force_elements:
         for field in getattr(element, "laws", ()):
@@ -158,40 +174,50 @@ def require_own(model: System, owners: Mapping[str, Claim], places: Mapping[str,
 
 
 def is_own(element: Element | Any, name: str) -> bool:
-    """Whether a name that an element's law and the model share is one and the same number: its joint's x."""
+    """Whether x in an element's law and the model's x are the same number, the coordinate of its joint.
+
+    Args:
+        element: the force element; a rest length makes its own x another number.
+        name: that occurs in its law.
+    """
     return name == "x" and element.joint == name and not getattr(element, "length", 0)
 
 
 def own_problem(name: str, owner: str) -> str:
-    """What to tell where an element's own x or v has another owner, too."""
+    """The message for an element's own x or v that has another owner, too.
+
+    Args:
+        name: x or v.
+        owner: the other owner, with its place.
+    """
     own = f'"{name}" is the element\'s own {OWN[name]} here'
     return f"{own}, but {owner} has this name too; rename that"
 
 
 class FreeNames:
-    """Gives names that nothing else has.
+    """Gives names that are not taken.
 
     Args:
-        taken: names that are.
+        taken: names that are taken already; reserved words are, too.
     """
 
     def __init__(self, taken: Collection[str]) -> None:
-        """Start from the names that are taken."""
+        """Start from the taken names and the reserved words."""
         self.taken = {*taken, *RESERVED}
 
     def take(self, *names: str) -> None:
-        """Take names away."""
+        """Mark names as taken."""
         self.taken |= set(names)
 
     def name(self, *choices: str) -> str:
-        """The first of the choices that is free, else the last one with a number; taken from now on."""
+        """The first of the choices that is free, else the last one with a number; it is taken from now on."""
         found = next(x for x in numbered(*choices) if x not in self.taken)
         self.taken.add(found)
         return found
 
 
 def numbered(*choices: str) -> Iterator[str]:
-    """The choices, then the last one with numbers from 2 on, without end."""
+    """The choices, then without end the last one with numbers from 2."""
     yield from choices
     for number in count(2):
         yield f"{choices[-1]}_{number}"

@@ -1,4 +1,4 @@
-"""Named outputs: what a model asks emitted code to return."""
+"""Named outputs: quantities that a model lets emitted code return."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ class Output:
     """A quantity that emitted code returns by name.
 
     Attributes:
+        name: unique among outputs.
         value: an expression, or its text.
+        unit: for readers; it is not checked.
+        about: its meaning, for readers.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""From the builder to the frozen system."""
+"""Snapshots of a builder as frozen systems."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Snapshots:
-    """A builder of which snapshots can be taken: its attributes are those of `System`."""
+    """A builder of which snapshots can be taken; its attributes are those of `System`."""
 
     name: str
     about: str
@@ -40,7 +40,7 @@ class Snapshots:
     places: dict[str, int]
 
     def system(self) -> System:
-        """What has been said until now, as a frozen system: what is said later does not reach it."""
+        """A frozen system of all declared so far; later changes of the builder do not affect it."""
         return System(
             name=self.name,
             gravity=settled(self.gravity),
@@ -67,7 +67,7 @@ class Snapshots:
 
     @property
     def elements(self) -> tuple[Element | Load, ...]:
-        """Force elements and loads, and what the networks' edges in mechanics exert."""
+        """Force elements and loads, and the forces that edges of networks exert on the mechanics."""
         return self.system().elements
 
     @property
@@ -76,7 +76,7 @@ class Snapshots:
         return self.system().depends_on_time
 
     def terminals(self) -> dict[str, tuple[str, Placement]]:
-        """Every terminal a joint may be connected to: its body and its placement there."""
+        """Every terminal to which a joint may be connected, with its body and its placement there."""
         return terminals_of(self.system())
 
     def graph(self) -> SystemGraph:

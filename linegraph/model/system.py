@@ -1,4 +1,4 @@
-"""The frozen system: what a builder had been told when it was asked."""
+"""The frozen system: what a builder held when the snapshot was taken."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ def _nothing() -> Any:
 
 @dataclass(frozen=True, repr=False)
 class System(Displayed):
-    """A system of components, connected at terminals: a snapshot that nothing changes.
+    """A system of components, connected at terminals: an immutable snapshot of a builder.
 
     Attributes:
         name: the prefix of everything emitted.
-        gravity: acceleration of free fall in ground axes (m/s^2).
+        gravity: acceleration of free fall in ground axes (m/s²).
         about: one paragraph for the head of emitted files.
         snap: rotation entries closer than this to 0, 1, -1, 1/2 or -1/2 become these exactly.
         bodies: the rigid bodies by name.
@@ -53,12 +53,12 @@ class System(Displayed):
         constraints: constraints with edges in declared order.
         relations: constraints between velocities in declared order.
         components: the components of scalar networks in declared order.
-        domains: power subspaces of the system's own, by name.
+        domains: power subspaces that the user declares, by name.
         parameters, inputs: named numbers, and inputs of laws.
         outputs: quantities that emitted code returns by name.
-        choices: what was chosen of the formulation.
-        bounds: where `check` and golden vectors may look at the equations.
-        warnings: what readers had to say.
+        choices: the user's choices of the formulation.
+        bounds: intervals within which `check` and golden vectors evaluate the equations.
+        warnings: messages of the reader.
         source: the file that the system was read from, if any.
         places: the lines of that file by the things that they declare.
     """
@@ -86,16 +86,16 @@ class System(Displayed):
     places: Mapping[str, int] = _nothing()
 
     def __repr__(self) -> str:
-        """Its name and size."""
+        """The name, with the numbers of bodies and joints."""
         return f"<System {self.name}: {len(self.bodies)} bodies, {len(self.joints)} joints>"
 
     def system(self) -> System:
-        """The system itself, so that it may be derived like a builder."""
+        """The system itself, so that functions may take a builder or a system."""
         return self
 
     @property
     def elements(self) -> tuple[Element | Load, ...]:
-        """Force elements and loads, and what the networks' edges in mechanics exert."""
+        """Force elements and loads, and the forces that edges of networks exert on the mechanics."""
         return (*self.force_elements, *forces_of(self.components))
 
     @property
@@ -109,22 +109,32 @@ class System(Displayed):
 
 
 def variant(system: System, **choices: Any) -> System:
-    """The same system with other choices of the formulation: what is not named is as by default."""
+    """The same system with other choices of the formulation.
+
+    Args:
+        system: its own choices are dropped.
+        **choices: attributes of `Choices`; those that are not given have their defaults.
+    """
     return replace(system, choices=replace(Choices(), **choices))
 
 
 def placed(error: ModelError, system: System) -> ModelError:
-    """Give an error the place in the file that the system was read from."""
+    """An error with its line in the file that the system was read from.
+
+    Args:
+        error: names the thing at fault.
+        system: knows the lines of things; without a file the error is returned unchanged.
+    """
     if system.source is None:
         return error
     return SourceError(system.source, system.places.get(error.thing), error.thing, error.problem)
 
 
 def settled(value: Value) -> Value:
-    """A value that shares nothing with the caller's that could still change.
+    """A value that shares nothing mutable with the caller's.
 
-    Lists, dictionaries and arrays are copied, also within tuples and dataclasses; numbers, texts and sympy's
-    expressions never change.
+    Lists, dictionaries and arrays are copied, also within tuples and dataclasses; numbers, texts and SymPy
+    expressions are immutable.
     """
     copied: Any = value
     if isinstance(value, (list, tuple)):
@@ -142,7 +152,7 @@ def settled(value: Value) -> Value:
 
 
 def _sequence(value: Any) -> Any:
-    """A list as another list, a tuple as it is if nothing in it changes."""
+    """A list as a copy, a tuple as it is if none of its items had to be copied."""
     items = [settled(item) for item in value]
     if isinstance(value, list):
         return items
@@ -152,5 +162,5 @@ def _sequence(value: Any) -> Any:
 
 
 def frozen(mapping: Mapping[str, Value]) -> Mapping[str, Value]:
-    """A copy of a mapping that cannot be changed."""
+    """An immutable copy of a mapping."""
     return MappingProxyType({name: settled(value) for name, value in mapping.items()})

@@ -1,4 +1,4 @@
-"""From components to the system graph: terminals, terminal graphs, and their union."""
+"""The system graph from components: terminals, terminal graphs, and their union."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Terminals = dict[str, tuple[str, Placement]]
 
 
 def terminals_of(model: System) -> Terminals:
-    """Every terminal of a model by name: its body and its placement there.
+    """Every terminal of a system by name, with its body and its placement there.
 
     Raises:
         ModelError: two terminals have the same name.
@@ -49,7 +49,7 @@ def terminals_of(model: System) -> Terminals:
 
 
 def system_graph(model: System) -> SystemGraph:
-    """Unite the terminal graphs of ground, bodies, joints, elements and loads.
+    """Unite the terminal graphs of ground, bodies, joints, elements, constraints and networks.
 
     Raises:
         ModelError: a component names a terminal that does not exist, or connects a body to itself.
@@ -77,7 +77,7 @@ def _ground_edges(model: System) -> list[Edge]:
 
 
 def _element_edges(model: System, element: Element | Load, terminals: Terminals) -> list[Edge]:
-    """An element in a joint is parallel to it; a load runs from ground to the point it acts on.
+    """The edges of an element: parallel to its joint, between its ends, or from ground to a load's point.
 
     Raises:
         ModelError: a terminal or a joint does not exist, or the joint has several freedoms.
