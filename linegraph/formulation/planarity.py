@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from linegraph.spatial.vector import Matrix
 
 IN_LINE = 1e-9
-"""How far the cosine between two axes may be from 1 for them to be one direction."""
+"""Largest deviation of a cosine from ±1 at which two axes count as parallel."""
 
 Turns = tuple[tuple[str, int], ...]
-"""An angle as a sum: joints' angles with signs; that of a joint measured from ground stands for all."""
+"""An angle as a sum of joint angles with signs; one measured from ground replaces those before it."""
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 Interval = tuple[float, float]
 
 GROUPS = ("coordinates", "velocities", "inputs", "parameters")
-"""What is bounded by name; the time ``t`` has no name of its own."""
+"""The groups of quantities that are bounded by name; the time ``t`` is bounded as such."""
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 COORDINATES = ("joint", "absolute", "absolute-angle", "automatic")
 JOINT, ABSOLUTE, ABSOLUTE_ANGLE, AUTOMATIC = COORDINATES
-"""Which edges carry a body's coordinates: its joint; its inertia edge; its joint for the place and its
-inertia edge for the orientation; or the last for bodies that turn in a plane, the first for all others."""
+"""The edges whose across variables are a body's coordinates: its joint; its inertia edge; its joint for the
+position and its inertia edge for the orientation; or this for bodies that turn in a plane, else its joint."""
 
 HEAD, TAIL, GROUND_AXES = REACTION_AXES = ("head", "tail", "ground")
 """The axes in which joint reactions are resolved."""

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from linegraph.model.system import System
 
 OWN = {"x": "displacement", "v": "rate"}
-"""What an element's laws call its own across variables."""
+"""The names of an element's own across variables in its laws, with their meaning."""
 
 
 class Claim(NamedTuple):

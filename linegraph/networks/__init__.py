@@ -1,6 +1,6 @@
-"""Scalar networks: from components to the states they need and the equations these obey.
+"""Scalar networks: the states that their components need, and the equations of these states.
 
-`equations.network_of` derives them; it is imported where a model has components.
+`equations.network_of` derives a `Network`; it is imported only where a model has components.
 """
 
 from linegraph.networks.network import Network, State

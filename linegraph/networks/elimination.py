@@ -1,8 +1,9 @@
-"""Linear equations solved over the DAG: pivots chosen by exact residues, every result a named step.
+"""Linear equations solved over the DAG, with pivots chosen by exact residues.
 
-Pivots of plus or minus one come first, so that only what is a resistive loop is ever divided by; then those
-in which a law is solved for a variable of its own edges, the diagonal: resistances make that positive
-definite, so that no size has to be looked at; among equals the one that fills least (Markowitz).
+Sizes of symbolic pivots are not known, so that the usual choice of the largest one is impossible. Pivots of
+±1 come first, so that only resistive loops are ever divided by. Then come those on the diagonal, where a law
+is solved for a variable of its own edges: positive resistances make that diagonal positive definite, whatever
+their sizes are. Among equals the pivot with the least fill-in is taken [Markowitz 1957].
 """
 
 from __future__ import annotations
@@ -24,10 +25,12 @@ if TYPE_CHECKING:
 
 @dataclass
 class LinearRow:
-    """``Σ entries unknown + rest = 0``.
+    """The linear equation ``Σ entries unknown + rest = 0``.
 
     Attributes:
-        owner: whose law it is; its own variables are pivots rather than others.
+        entries: coefficients by unknown.
+        rest: the sum of all other terms.
+        owner: the component whose law it is; its own variables are preferred as pivots.
     """
 
     entries: dict[Symbol, Scalar]
@@ -37,12 +40,13 @@ class LinearRow:
 
 @dataclass
 class Elimination:
-    """What elimination leaves.
+    """The result of an elimination.
 
     Attributes:
-        values: the unknowns that were solved for, by those that were not.
-        pivots: what was divided by and is no number.
-        left: rows without unknowns: what their rest says must be zero.
+        values: the unknowns that were solved for, in terms of those that were not.
+        pivots: the divisors that are not numbers, which must not vanish.
+        left: for rows without unknowns, the expression that must be zero.
+        steps: the unknown and the scaled row of each pivot, in order.
     """
 
     values: dict[Symbol, Scalar] = field(default_factory=dict)
@@ -58,9 +62,9 @@ def eliminate(
 
     Args:
         rows: linear equations.
-        dag: where to calculate.
-        residues: what is zero.
-        last: unknowns that are solved for only where nothing else can be.
+        dag: of all scalars.
+        residues: the exact zero test.
+        last: unknowns that are solved for only where no other can be.
     """
     found = Elimination()
     open_rows = [_cleaned(row, residues) for row in rows]
@@ -107,7 +111,7 @@ def _subtract(row: LinearRow, scaled: LinearRow, factor: Scalar, residues: Resid
 
 
 def _pivot(rows: Sequence[LinearRow], last: Collection[Symbol]) -> tuple[int, Symbol] | None:
-    """The next pivot: its row and its unknown."""
+    """The next pivot, by its row and its unknown; None if no row has an unknown."""
     columns: dict[Symbol, int] = {}
     for row in rows:
         for symbol in row.entries:
@@ -135,7 +139,7 @@ def _plain(x: Scalar) -> bool:
 
 
 def _over(x: Scalar, pivot: Scalar, dag: Dag) -> Scalar:
-    """A quotient; one of two numbers is exact, since terms that cancel would not do so in floats."""
+    """The quotient by a pivot; that of two numbers is exact, since rounded terms would not cancel."""
     if isinstance(pivot, Node):
         return x / pivot
     if pivot in (1, -1):

@@ -1,9 +1,9 @@
-"""The equations of a network: ``𝓜 ż = f`` over its states and what it exerts on mechanics.
+"""The equations ``𝓜 ż = f`` of a network over its states, with the forces that it exerts on mechanics.
 
-Stores whose variable is a state give a row each, ``d/dt charge + rest = other variable``. Stores that depend
-on them add to it by the same equations, as masses add in the paper's congruence: their other variable is the
+Each store whose variable is a state gives a row, ``d/dt charge + rest = other variable``. Stores that depend
+on them add to 𝓜 by the same equations, as masses do in the paper's congruence: their other variable is the
 rate of a charge that the states determine. Where 𝓜 is still singular, its null combinations are constraints
-among the states, which are solved and differentiated in turn until it is regular.
+among the states, which are solved and differentiated until it is regular.
 """
 
 from __future__ import annotations
@@ -39,10 +39,10 @@ if TYPE_CHECKING:
 
 
 def network_of(model: System) -> Network | None:
-    """Derive the network of a model; None if it has no components.
+    """Derive the network of a system; None if it has no components.
 
     Raises:
-        ModelError: it has no equations; the message names the components.
+        ModelError: the network has no equations; the message names the components at fault.
     """
     if not model.components:
         return None
@@ -57,7 +57,7 @@ def network_of(model: System) -> Network | None:
 
 
 def _require_places(model: System, branches: Sequence[Branch]) -> None:
-    """Refuse edges in mechanics of the wrong kind: 1-D rotation at a joint that slides, and the like."""
+    """Refuse ports in mechanics of the wrong kind, such as 1-D rotation at a joint that slides."""
     units = {joint.name: [q.unit for q in joint.velocities()] for joint in model.joints}
     for branch in branches:
         component = branch.component
@@ -74,7 +74,7 @@ def _require_places(model: System, branches: Sequence[Branch]) -> None:
 
 
 class _Derivation:
-    """From static values to 𝓜 and f."""
+    """Derives 𝓜 and f from the values of the static variables."""
 
     def __init__(
         self,
@@ -94,7 +94,7 @@ class _Derivation:
         self._valued = substituting(laws, statics.kirchhoff, statics.values)
 
     def network(self) -> Network:
-        """All of it."""
+        """Derive rates, rows, dependent stores and constraints, and collect them."""
         for own in self._laws.own:
             rate = self._put(own.rate)
             if not any(kind == DUAL for kind, _ in self._calculus.support(rate)):
@@ -157,17 +157,17 @@ class _Derivation:
 
     @property
     def _first(self) -> str:
-        """The component of the first store that depends on others, for errors; the model if there is none."""
+        """The component of the first dependent store, for errors; the model if there is none."""
         for branch in self._branches:
             if branch.name in self._selection.dependent:
                 return f'{branch.component.kind} "{branch.component.name}"'
         return self._who
 
     def _put(self, x: Scalar) -> Scalar:
-        """A scalar by states, inputs and what only rates determine, where it does depend on that.
+        """A scalar in terms of states, inputs and those variables that only rates determine.
 
-        Kirchhoff's laws add what rates determine and subtract it again: what a dependent store keeps does
-        not depend on rates, though every edge of its circuit may.
+        Kirchhoff's laws add the latter and subtract them again: the charge of a dependent store does not
+        depend on rates, though every edge of its circuit may, so that such symbols are pruned.
         """
         return self._pruned(self._valued(x))
 
@@ -177,7 +177,7 @@ class _Derivation:
     # -- states and their rates
 
     def _listed(self) -> list[State]:
-        """States in the order of the components; a component's kept variables before its own states."""
+        """The states in the order of the components; a component's stored variables before its own states."""
         order = {c.name: k for k, c in enumerate(self._model.components)}
         branch = {b.name: b for b in self._branches}
         found: list[tuple[int, State]] = []
@@ -197,7 +197,7 @@ class _Derivation:
         return [state for _, state in sorted(found, key=lambda pair: pair[0])]
 
     def _called(self, symbol: Symbol) -> str:
-        """An across or through variable by its letter."""
+        """The name of an across or through variable, with the letter of its domain."""
         kind, edge = symbol
         branch = next(b for b in self._branches if b.name == edge)
         domain = self._domain(branch.port.domain) if branch.port.domain else None
@@ -207,7 +207,7 @@ class _Derivation:
         return f"{letter}_{edge.replace('.', '_')}"
 
     def _short(self, branch: Branch, store: StoreLaw) -> str:
-        """The component's name, unless it keeps several variables of one kind."""
+        """The component's name, or the edge's if the component stores several variables in one domain."""
         alike = [
             b
             for b in self._branches
@@ -227,7 +227,7 @@ class _Derivation:
     # -- rows
 
     def _duals(self) -> dict[Symbol, Scalar]:
-        """The variables that only rates determine, by the rates."""
+        """The variables that only rates determine, in terms of rates."""
         found: dict[Symbol, Scalar] = {}
         for store in self._selection.determined:
             charge = self._put(store.charge)
@@ -242,7 +242,7 @@ class _Derivation:
         return found
 
     def _rows(self) -> list[Scalar]:
-        """What is zero: a row for each store whose other variable is known without rates, and own states."""
+        """Expressions that are zero, for each store that is not dependent and each component's own state."""
         determined = {store.edge for store in self._selection.determined}
         rows = [
             self._rates.of(self._put(store.charge))
@@ -258,7 +258,7 @@ class _Derivation:
         return [*rows, *own]
 
     def _owners(self) -> list[int | None]:
-        """Of each row the state whose store it is of; None where that depends on others."""
+        """For each row the state of its store; None where that store is dependent."""
         determined = {store.edge for store in self._selection.determined}
         keys = [store.key for store in self._laws.stores if store.edge not in determined]
         return [self._place.get(key) for key in (*keys, *(own.key for own in self._laws.own))]
@@ -287,7 +287,7 @@ class _Derivation:
             force.append(-still(row))
         return mass, force
 
-    # -- what to tell
+    # -- remarks and errors
 
     def _input_rates(self, scalars: Sequence[Scalar]) -> dict[str, int]:
         found: dict[str, int] = {}
@@ -300,7 +300,7 @@ class _Derivation:
         return {name: found[name] for name in declared if name in found}
 
     def _require_order(self, network: Network) -> None:
-        """Refuse laws of three derivatives, and rates that are not in proportion to what they enter."""
+        """Refuse laws that need third derivatives, and those that are not linear in rates."""
         entries = [(i, x) for i, x in enumerate(network.force)]
         entries += [(i, x) for (i, _), x in network.mass.items()]
         for row, x in entries:
@@ -311,7 +311,7 @@ class _Derivation:
                     raise self._curved(network, row)
 
     def _curved(self, network: Network, row: int) -> ModelError:
-        """What to tell where a law is not linear in a rate."""
+        """The error for a law that is not linear in a rate."""
         count = len(network.states)
         if row < count:
             component = network.owner(network.states[row]).name

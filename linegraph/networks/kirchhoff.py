@@ -1,7 +1,8 @@
-"""Cutset and circuit equations: every across and through variable by the *primary* ones.
+"""Cutset and circuit equations: every across and through variable in terms of the *primary* ones.
 
-Primary are the across variables of branches and the through variables of chords. With [U A] Y = 0 and
-[B U] X = 0 the others are integer combinations of them, so that Kirchhoff's laws hold whatever comes.
+Primary are the across variables of branches and the through variables of chords. By [U A] Y = 0 and [B U] X =
+0 the others are integer combinations of them, so that Kirchhoff's laws hold exactly, whatever values these
+get.
 """
 
 from __future__ import annotations
@@ -21,19 +22,19 @@ if TYPE_CHECKING:
 
 
 class Kirchhoff:
-    """The equations of chosen trees.
+    """The cutset and circuit equations of chosen trees.
 
     Args:
-        branches: all edges; those in 3-D mechanics have a primary through variable alone, or none if they
-            store: then rates determine it.
+        branches: all edges. A port in 3-D mechanics has a primary through variable alone, or none if it
+            stores, since rates determine it then.
         topologies: one for each scalar subspace.
 
     Attributes:
-        primaries: in declared order of the edges.
+        primaries: the primary variables, in declared order of the edges.
     """
 
     def __init__(self, branches: Sequence[Branch], topologies: Iterable[Topology]) -> None:
-        """Find the combinations."""
+        """Find each variable's combination of primary ones."""
         self._forms: dict[Symbol, dict[Symbol, int]] = {}
         for topology in topologies:
             self._add(topology)
@@ -59,15 +60,21 @@ class Kirchhoff:
             self._forms[("X", name)] = {("X", circuit.columns[j]): -b for j, b in row.items()}
 
     def form(self, symbol: Symbol) -> dict[Symbol, int]:
-        """A variable as a combination of primary ones."""
+        """A variable as a combination of primary ones, with integer factors."""
         return self._forms[symbol]
 
     def knows(self, symbol: Symbol) -> bool:
-        """Whether a symbol is an across or through variable of an edge."""
+        """Whether a symbol is the across or through variable of an edge."""
         return symbol in self._forms
 
     def combined(self, symbol: Symbol, dag: Dag, values: dict[Symbol, Scalar]) -> Scalar:
-        """A variable from the values of the primary ones; those without value stand for themselves."""
+        """A variable from values of the primary ones; primary variables without a value stay symbols.
+
+        Args:
+            symbol: the variable: ("X", edge) or ("Y", edge).
+            dag: of all scalars.
+            values: scalars by primary variable.
+        """
         total: Scalar = 0
         for primary, factor in self._forms[symbol].items():
             value = values[primary] if primary in values else dag.symbol(*primary)

@@ -1,4 +1,4 @@
-"""The laws of a network, evaluated: stores, static laws, states of components of their own."""
+"""Records of a network's evaluated laws: stores, static laws, and states of components."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class StoreLaw:
-    """An edge that keeps a variable: the other one is ``d/dt charge + rest``.
+    """The law of a port that stores: one variable is kept, the other is ``d/dt charge + rest``.
 
     Attributes:
         edge: its name.
-        key: the symbol that is kept.
+        key: the symbol of the variable that is kept.
         dual: the symbol of the other variable.
-        charge: of what is kept, a displacement, the time.
-        rest: what the other variable has beside the charge's rate.
+        charge: a function of kept variables, displacements and the time, such as C X or L Y.
+        rest: the part of the other variable that is not the charge's rate.
     """
 
     edge: str
@@ -34,7 +34,13 @@ class StoreLaw:
 
 @dataclass(frozen=True)
 class Static:
-    """A law without a rate: what is zero, and the edge whose port it is the law of."""
+    """A law without a rate.
+
+    Attributes:
+        component: whose law it is.
+        zero: an expression that is zero.
+        edge: the port to which the law belongs.
+    """
 
     component: Component
     zero: Scalar
@@ -43,7 +49,13 @@ class Static:
 
 @dataclass(frozen=True)
 class Own:
-    """A state of a component's own, and its rate."""
+    """A state of a component beside its ports, with its rate.
+
+    Attributes:
+        key: its symbol.
+        quantity: its name, unit and meaning.
+        rate: its time derivative.
+    """
 
     key: Symbol
     quantity: Quantity
@@ -55,10 +67,16 @@ class Laws:
     """All laws of a network.
 
     Attributes:
-        energy: stored by each component; in powers of what is kept only where a co-energy is known.
-        heat: the power each component dissipates.
-        unknown: components whose energy is not known: of a charge or a force that no rule integrates.
-        driven: stores whose value the time or inputs change, and the names of these.
+        dag: of all scalars.
+        calculus: derivatives over it.
+        statics: laws without rates.
+        stores: laws of stores in scalar subspaces.
+        spatial: laws of ports in 3-D mechanics that store.
+        own: states of components.
+        energy: stored by each component (J); 0 for the part that no rule integrates.
+        heat: the power that each component dissipates (W).
+        unknown: components of unknown energy: no rule integrates their charge or force.
+        driven: for stores whose value the time or inputs change, the names of these.
     """
 
     dag: Dag

@@ -1,9 +1,9 @@
-"""Terminal equations: every component's laws, written once over the symbols of a DAG of the network's own.
+"""Terminal equations: all laws of the components, evaluated once over symbols of the network's own DAG.
 
 X, Y    the across and the through variable of an edge
-s       a state of a component's own
-w, x    rate and displacement of an edge in 3-D mechanics
-u, t, p, name    inputs, the time, parameters, and whatever else of the model laws name
+s       a state of a component
+w, x    rate and displacement of a port in 3-D mechanics
+u, t, p, name    inputs, the time, parameters, and all else of the model that laws name
 """
 
 from __future__ import annotations
@@ -35,10 +35,15 @@ if TYPE_CHECKING:
 
 
 def laws_of(model: System, branches: Sequence[Branch], projections: Sequence[Projection]) -> Laws:
-    """Evaluate every component.
+    """Evaluate the laws of every component.
+
+    Args:
+        model: the system.
+        branches: the edges of its components.
+        projections: the graph of each scalar subspace.
 
     Raises:
-        ModelError: a law names what does not exist, or has no value.
+        ModelError: a law names something that does not exist, or has no finite value.
     """
     dag = Dag()
     laws = Laws(dag, Calculus(dag, (CONSTANT,)))
@@ -66,7 +71,7 @@ def laws_of(model: System, branches: Sequence[Branch], projections: Sequence[Pro
 
 
 def _require_names(component: Component, names: _Names) -> None:
-    """Refuse variables of edges that do not exist, and the state of an element that has none."""
+    """Refuse names of edges that do not exist, and the state s of an element that has none."""
     stateless = component.kind == "element" and getattr(component, "rate", None) is None
     for value in component.values():
         for name in sorted(names_in(value)):
@@ -83,7 +88,7 @@ def _require_names(component: Component, names: _Names) -> None:
 
 
 def _evaluate(component: Component, at: At, laws: Laws) -> None:
-    """One component's statics, stores, states, energy and heat."""
+    """Enter one component's static laws, stores, states, energy and heat."""
     calculus = laws.calculus
     charges = component.charges(at)
     work = (
@@ -132,7 +137,7 @@ def _evaluate(component: Component, at: At, laws: Laws) -> None:
 
 
 def _proportional(charge: Scalar, kept: set[Symbol], laws: Laws) -> bool:
-    """Whether a charge is linear in what is kept, without a constant."""
+    """Whether a charge is linear in the kept variables, without a constant term."""
     slopes = laws.calculus.gradient(charge)
     curved = any(
         laws.calculus.support(slope) & kept for key, slope in slopes.items() if key in kept
@@ -141,14 +146,17 @@ def _proportional(charge: Scalar, kept: set[Symbol], laws: Laws) -> bool:
 
 
 def _mechanical(component: Component, place: int) -> bool:
-    """Whether a port is the one whose displacement counts: the last."""
+    """Whether a port is the one whose displacement is in the co-energy: the last."""
     return component.displaced and place == len(component.ports()) - 1
 
 
 def _ways(
     projections: Sequence[Projection], kept: set[str]
 ) -> dict[tuple[str, str], list[tuple[str, int]]]:
-    """From each vertex to ground: edges with +1 where X counts from the vertex's side, rather `kept` ones."""
+    """From each vertex the way to ground: edges, +1 where X is counted from the vertex's side.
+
+    Edges that keep an across variable are preferred.
+    """
     found: dict[tuple[str, str], list[tuple[str, int]]] = {}
     for projection in projections:
         weights = {edge.name: float(edge.name not in kept) for edge in projection.edges}

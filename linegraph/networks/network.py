@@ -1,4 +1,4 @@
-"""A network derived: what the rest of the program knows of it."""
+"""The derived network, as the rest of the program uses it."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 
 INPUTS = ("u", "du", "ddu")
 RATE, SHAFT_RATE = "dz", "dw"
-"""Symbols of the rates of states, by their place, and of what edges in mechanics accelerate with."""
+"""Symbols of the rates of states, by their index, and of the accelerations of ports in mechanics."""
 
 
 @dataclass(frozen=True)
 class State:
-    """A state of a network: its quantity and the symbol it is."""
+    """A state of a network: its quantity, and the symbol that it has in the laws."""
 
     quantity: Quantity
     key: Symbol
@@ -36,25 +36,26 @@ class State:
 
 @dataclass(frozen=True)
 class Network:
-    """A network derived.
+    """The equations ``𝓜 ż = f`` of a network, with all its edges.
 
     Attributes:
-        laws: its terminal equations, and the DAG all its scalars are of.
+        laws: its terminal equations, with the DAG of all scalars.
         branches: its edges.
         topologies: the chosen tree of each subspace.
         states: z, in the order of the components.
-        mass: 𝓜 by (row, column): states first, then edges in mechanics; entries that are zero left out.
-        force: f by row; of an edge in mechanics what it drives with.
+        mass: 𝓜 by (row, column), states first, then ports in 3-D mechanics; zero entries are left out.
+        force: f by row; for a port in mechanics the force or torque with which it drives.
         variables: (X, Y) of every edge; they may contain the rates of states.
-        loop: what is zero in the algebraic loop; its unknowns are symbols.
-        dependent: stores that are no states, and on what they depend.
-        rates: inputs whose derivative is needed, with the order.
-        remarks: what a reader should know.
-        energy, heat: what each component stores and dissipates.
-        heats: subspaces whose through times across is no power.
-        loop_names: what the unknowns of the algebraic loop are called.
-        eased: what is zero in the loop with resistances at its laws, the symbols `EASE`: Newton's method
-            lets these vanish where it does not succeed without.
+        loop: residuals of the algebraic loop; its unknowns are symbols.
+        pivots: divisors that must not vanish.
+        dependent: stores that are no states, with those that determine them.
+        rates: inputs whose derivative is needed, with its order.
+        remarks: for readers of the model.
+        energy, heat: stored (J) and dissipated (W) by each component.
+        heats: subspaces in which through times across is not a power.
+        loop_names: names of the unknowns of the algebraic loop.
+        eased: residuals of the loop with resistances at its laws, the symbols `EASE`, which Newton's method
+            lets vanish where it does not succeed without.
     """
 
     laws: Laws
@@ -77,17 +78,17 @@ class Network:
 
     @property
     def dag(self) -> Dag:
-        """Where all its scalars are."""
+        """The DAG of all its scalars."""
         return self.laws.dag
 
     @cached_property
     def ports(self) -> tuple[Branch, ...]:
-        """The edges in 3-D mechanics."""
+        """The ports in 3-D mechanics."""
         return tuple(branch for branch in self.branches if branch.port.spatial)
 
     @cached_property
     def symmetric(self) -> bool:
-        """Whether 𝓜 is, as it must be where nothing but controlled sources makes power."""
+        """Whether 𝓜 is symmetric, as it must be if only controlled sources generate power."""
         residues = Residues()
         return all(
             residues(entry) == residues(self.mass.get((j, i), 0))
@@ -95,7 +96,7 @@ class Network:
         )
 
     def owner(self, state: State) -> Component:
-        """The component that a state belongs to."""
+        """The component to which a state belongs."""
         place = str(state.key[1])
         names = (place, place.rpartition(".")[0])
         return next(
@@ -106,55 +107,55 @@ class Network:
 
     @cached_property
     def places(self) -> dict[Symbol, int]:
-        """Where each state stands among them."""
+        """The index of each state, by its symbol."""
         return {state.key: k for k, state in enumerate(self.states)}
 
     @cached_property
     def loop_jacobian(self) -> list[list[Scalar]]:
-        """What is zero in the algebraic loop, by its unknowns."""
+        """The derivatives of the loop's residuals with respect to its unknowns."""
         size = range(len(self.loop))
         return [[self.laws.calculus.derivative(r, (LOOP, k)) for k in size] for r in self.loop]
 
     @cached_property
     def eased_jacobian(self) -> list[list[Scalar]]:
-        """The same of the loop with resistances at its laws."""
+        """The derivatives of the loop's residuals with resistances, with respect to its unknowns."""
         size = range(len(self.loop))
         return [[self.laws.calculus.derivative(r, (LOOP, k)) for k in size] for r in self.eased]
 
     @cached_property
     def loop_needs(self) -> frozenset[Symbol]:
-        """The symbols that the algebraic loop depends on beside its unknowns."""
+        """The symbols on which the algebraic loop depends, without its unknowns."""
         slopes = (slope for row in self.eased_jacobian for slope in row)
         supports = (self.laws.calculus.support(x) for x in (*self.eased, *slopes, *self.loop_sizes))
         return frozenset(s for support in supports for s in support if s[0] not in (LOOP, EASE))
 
     @cached_property
     def loop_sizes(self) -> list[Scalar]:
-        """The size of the terms of what is zero there: at a solution it is zero but for their rounding.
+        """The size of the terms of each residual: at a solution it is zero up to the rounding of these.
 
-        What does not depend on the unknowns is a number while they are searched: its size is its own, however
-        steeply it depends on the time or an input.
+        Terms without unknowns are constant during the search: their size is their own value, however steeply
+        they depend on the time or an input.
         """
         return [TermSizes(self.laws.calculus, (LOOP,))(r) for r in self.loop]
 
     @cached_property
     def force_slopes(self) -> list[list[Scalar]]:
-        """F of each row, by the unknowns of the algebraic loop."""
+        """The derivatives of f, by row, with respect to the unknowns of the algebraic loop."""
         size = range(len(self.loop))
         return [[self.laws.calculus.derivative(f, (LOOP, k)) for k in size] for f in self.force]
 
     @cached_property
     def variable_sizes(self) -> dict[str, tuple[Scalar, Scalar]]:
-        """Of (X, Y) of every edge the size of the terms that they are sums of."""
+        """The size of the terms of X and of Y, for every edge."""
         sizes = TermSizes(self.laws.calculus)
         return {name: (sizes(x), sizes(y)) for name, (x, y) in self.variables.items()}
 
     @cached_property
     def parts(self) -> dict[str, tuple[Scalar, ...]]:
-        """F with all inputs zero, what inputs add to that, and both; by row.
+        """By row, f with all inputs zero ("resting"), what inputs add to it ("driven"), and both ("all").
 
-        Where inputs decide an algebraic loop, or are divided by, the two cannot be told apart: all of it is
-        called resting.
+        Where inputs are in an algebraic loop, or are divided by, the two cannot be separated, and all of f
+        counts as resting.
         """
         calculus, dag = self.laws.calculus, self.dag
         support = {s for row in self.loop for s in calculus.support(row)}
@@ -172,13 +173,13 @@ class Network:
 
     @cached_property
     def part_sizes(self) -> dict[str, tuple[Scalar, ...]]:
-        """Of F with inputs or without the size of the terms that each row is the sum of."""
+        """The size of the terms of each row of `parts`."""
         sizes = TermSizes(self.laws.calculus)
         return {what: tuple(sizes(x) for x in rows) for what, rows in self.parts.items()}
 
     @cached_property
     def affine(self) -> bool:
-        """Whether inputs add to f in proportion: what they drive is then no difference of two values."""
+        """Whether f is affine in the inputs, so that their contribution needs no difference of two values."""
         calculus = self.laws.calculus
         return not any(
             symbol[0] in INPUTS and any(s[0] in INPUTS for s in calculus.support(slope))
@@ -190,7 +191,7 @@ class Network:
         """Refuse a network whose rates are not linear in its states and inputs.
 
         Raises:
-            ModelError: names a state whose rate is not.
+            ModelError: names a state whose rate is not linear.
         """
         calculus = self.laws.calculus
         variables = {*self.places} | {
@@ -214,7 +215,7 @@ class Network:
         return ModelError(f'"{name}"', problem)
 
     def _added(self, row: Scalar, resting: Scalar) -> Scalar:
-        """What inputs add to a row: their slopes times them, where these are free of inputs."""
+        """The contribution of inputs to a row: their slopes times them, if these are free of inputs."""
         slopes = {
             symbol: slope
             for symbol, slope in sorted(self.laws.calculus.gradient(row).items(), key=_symbol_first)
@@ -230,7 +231,7 @@ class Network:
         return total
 
     def rate(self, x: Scalar) -> Scalar:
-        """The total derivative of what depends on states, displacements and the time."""
+        """The total time derivative of a scalar of states, displacements, inputs and the time."""
         total: Scalar = 0
         follows = {"x": "w", "w": SHAFT_RATE, "u": "du", "du": "ddu"}
         residues = Residues()
@@ -251,10 +252,10 @@ class Network:
 
     @cached_property
     def gains(self) -> dict[str, Scalar]:
-        """Of each component what it stores and turns into heat, less what it takes in: zero.
+        """For each component the power that it stores and dissipates less the power that it takes in: zero.
 
-        Left out are sources, stores by a charge alone, of which no energy is known, stores that the time,
-        inputs or other components change, and heat itself.
+        Left out are sources, stores of unknown energy, stores that the time, inputs or other components
+        change, and thermal components, whose through times across is not a power.
         """
         found: dict[str, Scalar] = {}
         for component in dict.fromkeys(branch.component for branch in self.branches):
@@ -272,7 +273,7 @@ class Network:
         return found
 
     def _foreign(self, component: Component) -> bool:
-        """Whether what a component stores depends on more than itself."""
+        """Whether the energy of a component depends on variables of others."""
         own = {branch.name for branch in self.branches if branch.component is component}
         return any(
             kind not in ("p", CONSTANT)
@@ -283,14 +284,14 @@ class Network:
 
     @cached_property
     def unknown(self) -> frozenset[str]:
-        """The components whose energy is not known: elements with a state, stores that no rule integrates."""
+        """The components of unknown energy: elements with a state, and stores that no rule integrates."""
         kinds = {branch.component for branch in self.branches}
         lawless = {c.name for c in kinds if getattr(c, "rate", None) is not None}
         return frozenset(lawless | self.laws.unknown)
 
     @cached_property
     def powerful(self) -> frozenset[str]:
-        """The components whose stores are in subspaces with a power."""
+        """The components whose ports are in subspaces where through times across is a power."""
         return frozenset(
             branch.component.name
             for branch in self.branches
@@ -299,10 +300,10 @@ class Network:
 
     @cached_property
     def domains(self) -> tuple[str, ...]:
-        """The scalar subspaces it has."""
+        """The names of its scalar subspaces."""
         return tuple(topology.projection.domain for topology in self.topologies)
 
 
 def _symbol_first(item: tuple[Symbol, Scalar]) -> str:
-    """An order of slopes that does not depend on how they were found."""
+    """A sort key for slopes, so that the order of terms does not depend on how they were found."""
     return repr(item[0])

@@ -1,10 +1,11 @@
-"""Newton's method for the algebraic loops of a network, in floats: the reference of what is emitted.
+"""Newton's method for the algebraic loops of a network, in floats: the reference for emitted code.
 
-A step is halved until the largest residual falls in proportion to what is left of it. That is enough for most
-loops, but not where a law is flat, as a saturation is and a dead zone, or has a kink that the step would have
-to cross. Then every law of the loop gets a resistance in series and a conductance in parallel, which vanish
-level by level; each level starts at the solution of the one before. Laws that rise, together with them, rise
-strictly and not too steeply: each level has exactly one solution, and it moves to that of the loop itself.
+A step is halved until the largest residual has fallen by enough. That suffices for most loops, but not where
+a law is flat, as a saturation or a dead zone is, or has a kink that the step would have to cross. Then every
+law of the loop gets a resistance in series and a conductance in parallel, which vanish level by level, each
+level starting at the solution of the one before: a continuation method. Laws that rise become strictly
+increasing and not too steep, so that each level has exactly one solution, which moves to that of the loop
+itself.
 """
 
 from __future__ import annotations
@@ -31,38 +32,45 @@ if TYPE_CHECKING:
 MOST_STEPS = 200
 MOST_HALVINGS = 40
 DECREASE = 1e-4
-"""The part of what a step promises by which the residual has to fall."""
+"""The fraction of the decrease predicted by linearisation that a step must achieve."""
 
 BEGINS = (0.0, 1.0, -1.0)
 RESISTANCES = (1.0, 1e3, 1e-3)
-"""The resistance (ohm, or what the subspace has) by which currents are compared with voltages."""
+"""Resistances (ohm, or the unit of the subspace) by which currents are compared with voltages."""
 
 NEAR, NEARER = 0.01, 12
-"""Where the search with resistances begins; not at zero, where roots are steep and powers flat. It begins at
-a tenth of that, up to so many times, where exponentials overflow."""
+"""The start of the search with resistances; not zero, where roots are steep and powers flat. Where
+exponentials overflow, a tenth of it is tried, up to so many times."""
 
 LEVELS = 24
 FIRST, RATIO = 0.5, 0.31622776601683794
-"""The first level's resistances, and by how much they shrink from level to level."""
+"""The resistances of the first level, and the factor from each level to the next, 1/sqrt(10)."""
 
 LEVEL_STEPS = 50
 LEVEL_GAP = 1e-9
-"""A level is solved when its residual has fallen to this part of what it was."""
+"""A level is solved when its residual has fallen to this fraction of its first value."""
 
 MISSED, MOST_MISSED = 1e-3, 3
-"""A level is missed if more than this part of its residual is left; so many in turn, and the way ends."""
+"""A level is missed if more than this fraction of its residual is left; so many in a row end the search."""
 
 ROUNDING = 1e-13
 """A residual below this fraction of its terms is zero."""
 
 PROBE_EASE, PROBE = 1e-8, 1e-6
-"""The resistances by which a singular Jacobian is made regular, and how far along its flattest direction
-another solution is looked for."""
+"""The resistances that make a singular Jacobian regular, and the distance along its flattest direction at
+which another solution is looked for."""
 
 
 @dataclass(frozen=True)
 class _Point:
-    """The loop at given unknowns: residuals, their derivatives, and the sizes of their terms."""
+    """The loop at given unknowns.
+
+    Attributes:
+        x: the unknowns.
+        residual: of each law.
+        jacobian: its derivatives with respect to the unknowns.
+        sizes: of the terms of each residual.
+    """
 
     x: Vector
     residual: Vector
@@ -77,22 +85,22 @@ class _Point:
 
     @property
     def rounding(self) -> bool:
-        """Whether the residuals are no more than rounding of their terms."""
+        """Whether all residuals are within the rounding of their terms."""
         pairs = zip(self.residual, self.sizes, strict=True)
         return all(abs(r) <= ROUNDING * size < math.inf for r, size in pairs)
 
     @property
     def solved(self) -> bool:
-        """Whether it is a solution."""
+        """Whether the unknowns are a solution."""
         return self.gap == 0 or (self.rounding and self.gap < math.inf)
 
     @property
     def steep(self) -> bool:
-        """Whether a slope is infinite, as that of a root at zero is: nothing is flat there."""
+        """Whether a slope is infinite, as that of a root at zero."""
         return not all(math.isfinite(x) for row in self.jacobian for x in row)
 
     def step(self, right: Vector) -> Vector | None:
-        """What solves ``jacobian step = right``; None where it is singular."""
+        """The solution of ``jacobian step = right``; None if the Jacobian is singular."""
         import numpy as np
 
         try:
@@ -103,14 +111,17 @@ class _Point:
 
 
 def solved(network: Network, known: Callable[[Symbol], float]) -> Vector:
-    """The unknowns of a network's algebraic loop.
+    """Solve a network's algebraic loop for its unknowns.
 
     Args:
-        network: whose loop it is.
-        known: the value of every other symbol.
+        network: with the loop.
+        known: the value of every other symbol, given as (argument, place).
+
+    Returns:
+        One number for each of `network.loop_names`.
 
     Raises:
-        ModelError: no solution was found, or there are others beside it.
+        ModelError: no solution was found, or it is not the only one.
     """
     evaluate = _evaluation(network, known)
     size = len(network.loop)
@@ -149,7 +160,7 @@ def _evaluation(network: Network, known: Callable[[Symbol], float]) -> Evaluate:
 
 
 def _run(evaluate: Evaluate, x: Vector, series: float, parallel: float) -> _Point:
-    """Newton's method with halved steps, as far as it comes."""
+    """Newton's method with halved steps, until it solves the loop or makes no more progress."""
     at = evaluate(x, series, parallel)
     eased = series > 0
     enough = LEVEL_GAP * at.gap if eased else 0.0
@@ -175,7 +186,7 @@ def _nearer(
     series: float,
     parallel: float,
 ) -> _Point | None:
-    """The point of a step, halved until the residual falls enough; None if it never does."""
+    """The end of a step, halved until the residual falls by enough; None if it never does."""
     length = 1.0
     for _ in range(MOST_HALVINGS):
         ahead = [a + length * b for a, b in zip(at.x, step, strict=True)]
@@ -190,7 +201,7 @@ def _nearer(
 
 
 def _followed(evaluate: Evaluate, size: int, resistance: float) -> _Point | None:
-    """What is reached as resistances at the laws vanish; None where levels on the way have no solution."""
+    """The solution reached as resistances at the laws vanish; None if levels in a row have no solution."""
     x = [NEAR * (1 + i / 8) for i in range(size)]
     ease = FIRST
     for _ in range(NEARER):
@@ -210,13 +221,13 @@ def _followed(evaluate: Evaluate, size: int, resistance: float) -> _Point | None
 
 
 def _only(evaluate: Evaluate, found: _Point) -> Vector:
-    """A solution, unless there are others beside it.
+    """The solution, if there is no other one beside it.
 
-    Where the Jacobian is singular, as at the zero of ``x abs(x)`` and within a dead zone, the next point in
-    the direction in which the residual changes least tells them apart.
+    Where the Jacobian is singular, as at the zero of ``x abs(x)`` and within a dead zone, a next point in the
+    direction in which the residual changes least tells a double root from a continuum of solutions.
 
     Raises:
-        ModelError: it is not the only one.
+        ModelError: there are others.
     """
     if found.steep or found.step(found.residual) is not None:
         return found.x

@@ -1,4 +1,4 @@
-"""Total derivatives: what a scalar of a network changes by as its states, edges and inputs do."""
+"""Total time derivatives of a network's scalars, by the chain rule."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ class Rates:
     """The chain rule over a network's symbols.
 
     Args:
-        who: what an error names.
+        who: the thing that errors name.
         calculus: derivatives over the network's DAG.
         states: whose rates are symbols.
         dependent: the stores that depend on others, for messages.
 
     Attributes:
-        replaced: states that constraints have fixed, and their values.
-        known: rates that static laws give: they are written as such, so that 𝓜 stays symmetric.
+        replaced: states that constraints have fixed, with their values.
+        known: rates that static laws give; they are written as such so that 𝓜 stays symmetric.
     """
 
     def __init__(
         self, who: str, calculus: Calculus, states: Sequence[State], dependent: Iterable[str]
     ) -> None:
-        """Nothing is replaced yet."""
+        """Start without replaced states."""
         self.who = who
         self.places = {state.key: k for k, state in enumerate(states)}
         self.replaced: dict[Symbol, Scalar] = {}
@@ -44,7 +44,7 @@ class Rates:
         self._residues = Residues()
 
     def of(self, x: Scalar) -> Scalar:
-        """The total derivative, linear in the rates of states and the accelerations of edges."""
+        """The total derivative of a scalar, linear in the rates of states and the accelerations of ports."""
         total: Scalar = 0
         for symbol, slope in self._calculus.gradient(x).items():
             if self._residues(slope):
@@ -71,7 +71,12 @@ class Rates:
         raise self.too_deep(kind, place)
 
     def too_deep(self, kind: str, place: object) -> ModelError:
-        """What to tell where a derivative is not known."""
+        """The error for a derivative that is not known.
+
+        Args:
+            kind: the argument of the symbol to be differentiated.
+            place: its place.
+        """
         names = ", ".join(self._dependent) or "some stores"
         what = {
             "ddu": f"the third derivative of input {place}",

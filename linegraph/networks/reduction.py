@@ -1,4 +1,4 @@
-"""States that constraints hidden in the equations fix: solved and differentiated until 𝓜 is regular."""
+"""Constraints hidden in the equations of a network, which fix states: index reduction until 𝓜 is regular."""
 
 from __future__ import annotations
 
@@ -21,7 +21,14 @@ if TYPE_CHECKING:
 
 
 class Reduction:
-    """Rows ``𝓜 ż = f`` of which some may follow from others."""
+    """Rows ``𝓜 ż = f`` of which some may be dependent.
+
+    Args:
+        rates: total derivatives; the states that are fixed are entered there.
+        calculus: derivatives over the network's DAG.
+        states: all states.
+        owners: for each row the state of its store, or None.
+    """
 
     def __init__(
         self,
@@ -30,14 +37,25 @@ class Reduction:
         states: Sequence[State],
         owners: Sequence[int | None],
     ) -> None:
-        """Nothing is fixed yet; `owners` are the states that rows stand for."""
+        """Start with no state fixed."""
         self._owners = list(owners)
         self._rates, self._states = rates, states
         self._calculus, self._dag = calculus, calculus.dag
         self._residues = Residues()
 
     def reduce(self, rows: list[Scalar], variables: dict[str, tuple[Scalar, Scalar]]) -> set[int]:
-        """While 𝓜 is singular, its null combinations fix states: the places of those that are gone."""
+        """Solve the null combinations of 𝓜 for states and differentiate them, until 𝓜 is regular.
+
+        Args:
+            rows: expressions linear in the rates that are zero; replaced by independent ones.
+            variables: (X, Y) by edge; the fixed states in them are replaced.
+
+        Returns:
+            The indices of the fixed states.
+
+        Raises:
+            ModelError: a combination fixes no state.
+        """
         gone: set[int] = set()
         while True:
             found = self._null(rows, gone)
@@ -63,7 +81,7 @@ class Reduction:
         return LinearRow(entries, rest)
 
     def _null(self, rows: Sequence[Scalar], gone: set[int]) -> Scalar | None:
-        """What a null combination of 𝓜 says must be zero; None if 𝓜 is regular."""
+        """The expression that a null combination of 𝓜 makes zero; None if 𝓜 is regular."""
         if self._rank(rows, gone) == len(rows):
             return None
         found = eliminate([self._rate_row(r, gone) for r in rows], self._dag, self._residues)
@@ -78,7 +96,7 @@ class Reduction:
         )
 
     def _independent(self, rows: Sequence[Scalar], gone: set[int]) -> list[Scalar]:
-        """Drop the one row that follows from the others and what has been fixed."""
+        """The rows without the one that follows from the others and the fixed states."""
         span, kept, dropped = Span(), [], False
         owners, self._owners = self._owners, []
         for k, row in enumerate(rows):
@@ -94,10 +112,12 @@ class Reduction:
         return kept if dropped else kept[:-1]
 
     def _fixed(self, rest: Scalar, gone: set[int]) -> tuple[int, Scalar]:
-        """The state that a constraint fixes, and its value.
+        """The index of the state that a constraint fixes, and its value.
+
+        The last state in whose slope no state occurs is taken.
 
         Raises:
-            ModelError: the constraint fixes none.
+            ModelError: the constraint fixes no state.
         """
         gradient = self._calculus.gradient(rest)
         for place in reversed(range(len(self._states))):
@@ -118,7 +138,7 @@ class Reduction:
 
     @cached_property
     def later(self) -> Replay:
-        """Put values in place of states that constraints have fixed."""
+        """The replacement of fixed states by their values."""
         values = dict(self._rates.replaced)
         for _ in values:
             replace = substitution(self._dag, values)
@@ -126,7 +146,7 @@ class Reduction:
         return substitution(self._dag, values)
 
     def _ordered(self, rows: list[Scalar], gone: set[int]) -> None:
-        """Give each row the place of the state whose rate stands in it: 𝓜's diagonal is not zero."""
+        """Sort the rows so that each has the rate of its own state, and no diagonal entry of 𝓜 is zero."""
         columns = [k for k in range(len(self._states)) if k not in gone]
         entries = [{s[1] for s in self._calculus.support(row) if s[0] == RATE} for row in rows]
         matched: dict[int, int] = {}

@@ -1,7 +1,9 @@
 """The normal tree: which stores are states, which depend on others, and the tree that shows it.
 
-Judged by exact rank over all static laws, two-ports and controlled sources included, each symbol a number
-like any other: what a store keeps is a state unless the laws and the states before it determine it already.
+It is decided by exact rank over all static laws, two-ports and controlled sources included, with pseudorandom
+residues for symbols. A normal tree found by weights alone would be wrong there: laws of two-ports relate
+edges that have no circuit in common. The variable that a store keeps is a state unless the laws and the
+states before it already determine it.
 """
 
 from __future__ import annotations
@@ -29,12 +31,13 @@ MOST_NAMED = 8
 
 @dataclass(frozen=True)
 class Selection:
-    """What is a state and what is not.
+    """The states and the trees of a network.
 
     Attributes:
-        states: stores whose kept variable is a state, in the order of choice.
-        dependent: the others, each with the names of what determines it.
-        determined: stores whose other variable only their charge determines: as many as depend.
+        states: stores whose kept variable is a state, in declared order.
+        dependent: the other stores, each with the names of those that determine it.
+        determined: as many stores as are dependent, whose other variable only the rate of their charge
+            determines.
         topologies: the tree of each scalar subspace.
     """
 
@@ -56,10 +59,10 @@ def select(
         branches: all edges.
         projections: the graph of each scalar subspace.
         laws: the terminal equations.
-        wanted: edges that are rather states, or branches, than others.
+        wanted: edges that are preferred as states, or as branches.
 
     Raises:
-        ModelError: the laws contradict or repeat each other, or leave something undetermined.
+        ModelError: the laws contradict or repeat each other, or leave a variable undetermined.
     """
     first = Kirchhoff(branches, [choose_forest(p, roots=(GROUND,)) for p in projections])
     judge = _Judge(first, laws, {b.name: b.component for b in branches})
@@ -81,7 +84,7 @@ def select(
 def _preferred(
     branches: Sequence[Branch], stores: Sequence[StoreLaw], wanted: Sequence[str]
 ) -> list[StoreLaw]:
-    """Wanted stores, then those with an end on ground, then the others; each in declared order."""
+    """Requested stores, then those with an end on ground, then the others; each in declared order."""
     ends = {b.name: b.port.between for b in branches}
     return sorted(
         stores,
@@ -90,7 +93,7 @@ def _preferred(
 
 
 class _Judge:
-    """Ranks, grown law by law."""
+    """The rank of all laws and kept variables, which grows law by law."""
 
     def __init__(
         self, kirchhoff: Kirchhoff, laws: Laws, components: Mapping[str, Component]
@@ -102,7 +105,7 @@ class _Judge:
         self._span = Span()
 
     def row(self, zero: object) -> Row:
-        """The slopes of a law along the primary variables."""
+        """The slopes of a law with respect to the primary variables."""
         found: Row = {}
         for symbol, slope in self._laws.calculus.gradient(zero).items():
             if self._kirchhoff.knows(symbol):
@@ -112,14 +115,14 @@ class _Judge:
         return found
 
     def take_statics(self) -> None:
-        """All laws without rates must be independent."""
+        """Enter all static laws, which must be independent."""
         for k, static in enumerate(self._laws.statics):
             made = self._span.add(self.row(static.zero), ("static", k))
             if made is not None:
                 raise self._repeated([self._laws.statics[i] for _, i in made])
 
     def _repeated(self, statics: Sequence[Static]) -> ModelError:
-        """What to tell of laws that determine the same variables twice."""
+        """The error for laws that determine the same variables twice."""
         names = list(dict.fromkeys(static.component.name for static in statics))
         kinds = {symbol[0] for static in statics for symbol in self._own(static)}
         shown = ", ".join(names[:MOST_NAMED]) + (", ..." if len(names) > MOST_NAMED else "")
@@ -150,7 +153,7 @@ class _Judge:
     def take_stores(
         self, order: Sequence[StoreLaw]
     ) -> tuple[list[StoreLaw], dict[str, tuple[str, ...]]]:
-        """What stores keep, as long as it is independent."""
+        """Enter the kept variables of stores: independent ones are states, the others depend on them."""
         states: list[StoreLaw] = []
         dependent: dict[str, tuple[str, ...]] = {}
         for store in order:
@@ -166,7 +169,7 @@ class _Judge:
     def take_duals(
         self, states: Sequence[StoreLaw], order: Sequence[StoreLaw]
     ) -> tuple[StoreLaw, ...]:
-        """The other variables of as many stores as it takes, rather of those that depend."""
+        """Enter the other variables of as many stores as are dependent, dependent ones first."""
         independent = {store.edge for store in states}
         found: list[StoreLaw] = []
         for store in sorted(order, key=lambda store: store.edge in independent):
@@ -177,7 +180,7 @@ class _Judge:
         return tuple(found)
 
     def require_complete(self) -> None:
-        """Everything must be determined."""
+        """Refuse laws that leave a variable undetermined."""
         if len(self._span) == len(self._kirchhoff.primaries):
             return
         loose = [s for s in self._kirchhoff.primaries if not self._span.holds({s: 1})]
@@ -191,7 +194,7 @@ class _Judge:
 def _weights(
     branches: Sequence[Branch], laws: Laws, judge: _Judge, states: set[str]
 ) -> dict[str, float]:
-    """Lower is rather a branch: given across variables, kept ones, ..., kept and given through variables."""
+    """Weights for the tree: from given across variables, low, to given through variables, high."""
     kept = {store.edge: store.key[0] for store in laws.stores}
     own: dict[str, set[str]] = {}
     for static in laws.statics:
@@ -215,7 +218,7 @@ def _weights(
 
 
 def _stiff(name: str, laws: Laws) -> float:
-    """A nonlinear law solved for Y is rather a branch, one solved for X rather a chord."""
+    """The weight of a static law: a nonlinear one solved for Y is a branch, one solved for X a chord."""
     for static in laws.statics:
         gradient = laws.calculus.gradient(static.zero)
         x, y = gradient.get(("X", name)), gradient.get(("Y", name))

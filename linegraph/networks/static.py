@@ -1,7 +1,7 @@
-"""The static part of a network: every variable from states, inputs and what only rates determine.
+"""The static part of a network: all variables from states, inputs and variables that only rates determine.
 
-Linear laws are eliminated symbolically. Of the others, those that give one more variable at a time are solved
-in that order; what remains is an algebraic loop, whose unknowns stay symbols for Newton's method.
+Linear laws are eliminated symbolically. Of the others, those that determine one more variable at a time are
+solved in that order; the rest is an algebraic loop, whose unknowns stay symbols for Newton's method.
 """
 
 from __future__ import annotations
@@ -25,20 +25,21 @@ if TYPE_CHECKING:
 
 DUAL, LOOP, EASE = "d", "loop", "ease"
 """Symbols of variables that only rates determine, of the unknowns of algebraic loops, and of the resistance
-in series and the conductance in parallel that make a loop easier to solve; both are zero at its solution."""
+in series and the conductance in parallel that make a loop easier to solve and are zero at its solution."""
 
 
 @dataclass
 class Statics:
-    """Values of the primary variables.
+    """The values of the primary variables.
 
     Attributes:
-        values: by primary variable.
-        loop: the unknowns of the algebraic loop, each with its own symbol's place.
-        residuals: what is zero there.
-        laws: the components whose laws make the loop.
-        pivots: what was divided by and might be zero.
-        eased: the residuals, with resistances at the ports of their laws.
+        kirchhoff: the chosen trees' equations.
+        values: scalars by primary variable.
+        loop: the unknowns of the algebraic loop; the k-th is the symbol ``(LOOP, k)`` in `values`.
+        residuals: expressions that are zero in the loop.
+        laws: the components whose laws form the loop.
+        pivots: divisors that might be zero.
+        eased: the residuals with resistances at the ports of their laws.
     """
 
     kirchhoff: Kirchhoff
@@ -51,10 +52,16 @@ class Statics:
 
 
 class Solver:
-    """Solves the static laws of a network."""
+    """Solves the static laws of a network on a chosen tree.
+
+    Args:
+        branches: all edges.
+        laws: the terminal equations.
+        selection: states and trees.
+    """
 
     def __init__(self, branches: Sequence[Branch], laws: Laws, selection: Selection) -> None:
-        """Take the chosen tree."""
+        """Collect the variables that are known as states."""
         self._laws = laws
         self._dag, self._calculus = laws.dag, laws.calculus
         self._residues = Residues()
@@ -64,7 +71,7 @@ class Solver:
         self._pivots: list[Scalar] = []
 
     def solve(self) -> Statics:
-        """All primary variables."""
+        """Solve for all primary variables."""
         rows = [*self._state_rows(), *self._dual_rows()]
         nonlinear: list[Static] = []
         for static in self._laws.statics:
@@ -87,7 +94,7 @@ class Solver:
         return self._nonlinear(nonlinear, values, free)
 
     def _pruned(self, value: Scalar) -> Scalar:
-        """A value without the unknowns that cancel in it: elimination adds and subtracts them."""
+        """A value without unknowns that cancel in it, as elimination adds and subtracts them."""
         return pruned(
             value,
             self._calculus,
@@ -96,7 +103,7 @@ class Solver:
         )
 
     def _state_rows(self) -> list[LinearRow]:
-        """A state that is no primary variable of the tree still is what Kirchhoff's laws say."""
+        """Rows for states that are not primary variables of the tree: Kirchhoff's laws for them."""
         rows = []
         for key in sorted(self._known):
             form = self._kirchhoff.form(key)
@@ -106,7 +113,7 @@ class Solver:
         return rows
 
     def _dual_rows(self) -> list[LinearRow]:
-        """What only rates determine is known under a symbol of its own."""
+        """Rows for variables that only rates determine; each is known as a symbol of its own."""
         rows = []
         for store in self._selection.determined:
             entries, rest = self._split(dict(self._kirchhoff.form(store.dual)))
@@ -114,7 +121,7 @@ class Solver:
         return rows
 
     def _split(self, slopes: dict[Symbol, Scalar]) -> tuple[dict[Symbol, Scalar], Scalar]:
-        """Slopes along unknown primary variables, and what the known ones make."""
+        """The slopes of unknown primary variables, and the sum of the terms of known ones."""
         entries: dict[Symbol, Scalar] = {}
         rest: Scalar = 0
         for symbol, slope in slopes.items():
@@ -125,7 +132,7 @@ class Solver:
         return entries, rest
 
     def _linear(self, zero: Scalar) -> LinearRow | None:
-        """A law as a row; None if it is not linear in what is unknown."""
+        """A law as a row; None if it is not linear in the unknowns."""
         gradient = self._calculus.gradient(zero)
         unknown = {s for s in gradient if self._kirchhoff.knows(s) and s not in self._known}
         for symbol in unknown:
@@ -145,7 +152,7 @@ class Solver:
         )
 
     def _natural(self, nonlinear: Sequence[Static]) -> set[Symbol]:
-        """What nonlinear laws are rather solved for: the variables of their own edges."""
+        """The variables of nonlinear laws' own edges, for which linear laws are solved last."""
         return {
             symbol
             for static in nonlinear
@@ -157,7 +164,7 @@ class Solver:
     def _nonlinear(
         self, laws: Sequence[Static], values: dict[Symbol, Scalar], free: list[Symbol]
     ) -> Statics:
-        """Solve what gives one variable at a time, before the loop and after it."""
+        """Solve the laws that determine one variable at a time, before the loop and after it."""
         put = self.substituting(values)
         open_laws = [(static, put(static.zero)) for static in laws]
         unknown = dict.fromkeys(free)
@@ -201,10 +208,10 @@ class Solver:
     def _eased(
         self, laws: Sequence[Static], residuals: Sequence[Scalar], values: dict[Symbol, Scalar]
     ) -> list[Scalar]:
-        """What is zero in the loop if the ports of its laws have the resistances of `EASE`.
+        """The residuals of the loop with the resistances `EASE` at the ports of its laws.
 
         A port gets a resistance in series and a conductance in parallel, or one of the two where the other
-        would make the loop depend on more than it does.
+        would make the loop depend on further symbols.
         """
         needed = {s for r in residuals for s in self._calculus.support(r)}
         put = self.substituting(values)
@@ -221,7 +228,7 @@ class Solver:
         return found
 
     def _in_resistances(self, static: Static, series: int, parallel: int) -> Scalar:
-        """A law behind a resistance and beside a conductance; laws that rise still do, and more steeply."""
+        """A law behind a resistance and beside a conductance; a rising law stays rising, more steeply."""
         dag = self._dag
         x, y = dag.symbol("X", static.edge), dag.symbol("Y", static.edge)
         inner_x = x - series * (dag.symbol(EASE, 0) * y)
@@ -232,7 +239,7 @@ class Solver:
     def _forward(
         self, laws: Sequence[tuple[Static, Scalar]], unknown: dict[Symbol, None]
     ) -> tuple[int, Symbol, Scalar] | None:
-        """A law with one unknown, in which it is linear."""
+        """A law with one unknown, in which it is linear: its index, the unknown and its value."""
         for place, (_, zero) in enumerate(laws):
             touched = [s for s in self._calculus.support(zero) if s in unknown]
             if len(touched) == 1:
@@ -244,7 +251,7 @@ class Solver:
     def _backward(
         self, laws: Sequence[tuple[Static, Scalar]], unknown: dict[Symbol, None]
     ) -> tuple[int, Symbol, Scalar] | None:
-        """An unknown that stands in one law only, and linearly: it follows from the others."""
+        """An unknown in one law only, and linear there: it follows from the other unknowns."""
         supports = [self._calculus.support(zero) for _, zero in laws]
         for symbol in unknown:
             places = [k for k, support in enumerate(supports) if symbol in support]
@@ -255,7 +262,7 @@ class Solver:
         return None
 
     def _solved(self, zero: Scalar, symbol: Symbol) -> Scalar | None:
-        """What makes an expression zero, if it is linear in the symbol."""
+        """The root of an expression that is linear in the symbol; None if it is not."""
         slope = self._calculus.derivative(zero, symbol)
         if symbol in self._calculus.support(slope) or not self._residues(slope):
             return None
@@ -265,12 +272,18 @@ class Solver:
         return -rest / slope
 
     def substituting(self, values: dict[Symbol, Scalar]) -> Replay:
-        """Put values in place of all across and through variables."""
+        """The replacement of all across and through variables by their values."""
         return substituting(self._laws, self._kirchhoff, values)
 
 
 def substituting(laws: Laws, kirchhoff: Kirchhoff, values: dict[Symbol, Scalar]) -> Replay:
-    """Put values in place of all across and through variables."""
+    """The replacement of all across and through variables by combinations of primary ones.
+
+    Args:
+        laws: the terminal equations.
+        kirchhoff: the chosen trees' equations.
+        values: scalars by primary variable.
+    """
 
     def symbol(key: Symbol) -> Scalar:
         if kirchhoff.knows(key):
@@ -283,13 +296,13 @@ def substituting(laws: Laws, kirchhoff: Kirchhoff, values: dict[Symbol, Scalar])
 def pruned(
     x: Scalar, calculus: Calculus, residues: Residues, doubtful: Callable[[Symbol], bool]
 ) -> Scalar:
-    """A scalar without the symbols that only seem to be in it: its derivative with respect to them is zero.
+    """A scalar without the symbols whose derivative is exactly zero, which only seem to occur in it.
 
     Args:
         x: the scalar.
         calculus: derivatives over its DAG.
-        residues: what is zero.
-        doubtful: of which symbols it is asked.
+        residues: the exact zero test.
+        doubtful: whether a symbol is to be tested; others stay.
     """
     dead = {
         symbol: 0

@@ -1,9 +1,9 @@
-"""What a store holds, and what its value may depend on, so that the energy comes from somewhere.
+"""The energy of stores, and the variables on which their values may depend.
 
-The other variable of a store is the rate of a charge, ``d/dt ∂W'/∂kept``. If W' depends on anything else, a
-force ``∂W'/∂x`` belongs to that: a capacitor pulls its plate. A transducer has a port for it. Where there is
-none, energy would come from nothing, so that such a store is refused. What the time and inputs change is
-changed by someone who does the work.
+The other variable of a store is the rate of a charge, ``d/dt ∂W'/∂kept``. If the co-energy W' depends on
+anything else, a force ``∂W'/∂x`` belongs to that: a capacitor pulls its plate. A transducer has a port for
+it. Without a port, energy would come from nothing, so that such a store is refused. The time and inputs may
+change a store, since whoever changes it does the work.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ TRANSDUCERS = {
     "coupled_inductors": "solenoid or reluctance_machine",
     "reluctance": "solenoid or reluctance_machine",
 }
-"""Which component to use where a store of a kind depends on the motion of a joint."""
+"""The component to use instead of a store whose value depends on the motion of a joint, by kind."""
 
 
 def changing(
@@ -45,12 +45,12 @@ def changing(
     Args:
         component: the store.
         branches: its edges.
-        calculus: supports over the network's DAG.
+        calculus: derivatives over the network's DAG.
         stored: its co-energy, energy and charges.
 
     Raises:
-        ModelError: the value depends on a joint, on the variables of other edges, or, where it is a constant,
-            on those of its own.
+        ModelError: the value depends on a joint, on the variables of other edges, or, if it is to be
+            constant, on those of its own.
     """
     _require_constants(component, {branch.name for branch in branches})
     support = sorted({s for x in stored for s in calculus.support(x)}, key=repr)
@@ -67,7 +67,14 @@ def changing(
 
 
 def coenergy_of(component: Component, at: At, laws: Laws, charges: Sequence[Scalar]) -> Scalar:
-    """The co-energy of a store by its charge, ``∫ Q dk``; 0 where no rule gives it."""
+    """The co-energy of a store by its charge, ``∫ Q dk`` with the kept variable k; 0 where no rule gives it.
+
+    Args:
+        component: the store; without a rule it is entered in `laws.unknown`.
+        at: its variables.
+        laws: of the network.
+        charges: its charges, one for each port.
+    """
     kept: Any = (at.X if at.branches[0].kept == ACROSS else at.Y)[0]
     found = antiderivative(laws.calculus, charges[0], (kept.a, kept.b))
     if found is None or len(charges) > 1:
@@ -77,7 +84,13 @@ def coenergy_of(component: Component, at: At, laws: Laws, charges: Sequence[Scal
 
 
 def own_energy_of(component: Component, at: At, laws: Laws) -> Scalar:
-    """What a component stores in states of its own; of a spring by its force ``∫ Y dx``."""
+    """The energy in states of the component itself (J); of a spring given by its force ``∫ Y dx``.
+
+    Args:
+        component: the component; without a rule it is entered in `laws.unknown`.
+        at: its variables.
+        laws: of the network.
+    """
     if not isinstance(component, Spring1D) or component.force is None:
         return component.own_energy(at)
     x: Any = at.states["x"]
@@ -115,7 +128,7 @@ def _foreign(component: Component, name: str) -> str:
 
 
 def _require_constants(component: Component, own: set[str]) -> None:
-    """Refuse a constant that depends on the store's own variables: it would be no constant."""
+    """Refuse a constant that depends on the store's own variables."""
     if not any(component.kept()):
         return
     for field, value in _fields(component):

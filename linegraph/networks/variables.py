@@ -1,4 +1,4 @@
-"""One component's variables: what its laws are written in."""
+"""The variables of one component, in which its laws are written."""
 
 from __future__ import annotations
 
@@ -42,11 +42,18 @@ if TYPE_CHECKING:
 
 
 TAKEN = "taken"
-"""The power that a force element turns into heat stands under this name."""
+"""The name of the power that a force element dissipates, as ``taken(NAME)``."""
 
 
 class At:
-    """One component's variables: what its laws are written in (`components.base.Terminals`)."""
+    """The variables of one component, as its laws use them; see `components.scalar.base.Terminals`.
+
+    Attributes:
+        X, Y: across and through variable of each port.
+        states: its own states by name.
+        x: the displacement of its mechanical port.
+        integrated: whether x is a state, since the port is in a network and not in 3-D mechanics.
+    """
 
     def __init__(
         self,
@@ -56,7 +63,7 @@ class At:
         names: _Names,
         ways: Mapping[tuple[str, str], list[tuple[str, int]]],
     ) -> None:
-        """Make the symbols."""
+        """Create the symbols in the network's DAG."""
         dag = laws.dag
         self.branches = branches
         self.X = [_across(dag, branch) for branch in branches]
@@ -73,10 +80,14 @@ class At:
         self._joint = getattr(component, "joint", None)
 
     def value(self, given: Any, **own: Scalar) -> Scalar:
-        """A model value as a scalar.
+        """A model value as a scalar of the network's DAG.
+
+        Args:
+            given: a number, a parameter, an expression or its text.
+            **own: scalars of the component for names in it, which take precedence.
 
         Raises:
-            ModelError: a name of the component's own has another owner, too.
+            ModelError: such a name also belongs to something else in the model.
         """
         for name in sorted(names_in(given) & own.keys()) if own else ():
             if name in self._names and not (name == "x" and self._joint == name):
@@ -88,11 +99,21 @@ class At:
         return constant(resolver(self._laws.dag, values)(given), self._laws.dag)
 
     def function(self, name: str, *x: Scalar) -> Scalar:
-        """An elementary function of `ir.functions.ARITY`, as a node of the network's DAG."""
+        """An elementary function, as a node of the network's DAG.
+
+        Args:
+            name: its name in `ir.functions.ARITY`.
+            *x: its arguments.
+        """
         return self._laws.dag.function(name, *x)
 
     def potential(self, domain: str, vertex: str) -> Scalar:
-        """The potential of a vertex: across variables summed along the tree from it to ground."""
+        """The potential of a vertex relative to ground: across variables summed along a tree.
+
+        Args:
+            domain: name of the subspace.
+            vertex: name of the vertex.
+        """
         total: Scalar = 0
         for edge, sign in self._ways[(domain, vertex)]:
             x = self._laws.dag.symbol("X", edge)
@@ -100,11 +121,20 @@ class At:
         return total
 
     def derivative(self, of: Scalar, by: Scalar) -> Scalar:
-        """The partial derivative of a law or charge with respect to one of the symbols above."""
+        """The partial derivative of a law or a charge.
+
+        Args:
+            of: the scalar.
+            by: one of the symbols of this component.
+        """
         return self._laws.calculus.derivative(of, key_of(by))
 
     def taken(self, name: str) -> Scalar:
-        """What another component loses, or a force element."""
+        """The power that another component or a force element dissipates (W).
+
+        Raises:
+            ModelError: there is no such component, damper or friction.
+        """
         if name in self._laws.heat:
             return self._laws.heat[name]
         if name in self._names.forces:
@@ -116,16 +146,21 @@ class At:
 
 
 def key_of(symbol: Scalar) -> Symbol:
-    """The argument and place of a symbol."""
+    """Argument and place of a symbol's node."""
     assert isinstance(symbol, Node)
     return (symbol.a, symbol.b)
 
 
 def constant(x: Scalar, dag: Dag) -> Scalar:
-    """A number as its decimal digits say it: what cancels, cancels.
+    """A number as an exact one, by its decimal digits, so that terms cancel that should.
 
-    One that is not whole is a symbol that carries its value: sums and products of many exact fractions would
-    grow without bound. `Residues` knows what it is worth, and it is a number again where the network is used.
+    A number that is not an integer becomes a symbol that carries its value: sums and products of many exact
+    fractions would grow without bound. `Residues` knows its value, and it is a number again where the network
+    is used.
+
+    Args:
+        x: a number; other scalars are returned unchanged.
+        dag: of the network.
     """
     if isinstance(x, float) and math.isfinite(x):
         x = Fraction(repr(x))
@@ -139,7 +174,7 @@ def _across(dag: Dag, branch: Branch) -> Scalar:
 
 
 class _Names(Mapping[str, Any]):
-    """Everything a law may name, made into symbols as it is named."""
+    """All names that a law may use; their symbols are created when they are looked up."""
 
     def __init__(self, model: System, branches: Sequence[Branch], dag: Dag) -> None:
         self._dag = dag
@@ -154,7 +189,7 @@ class _Names(Mapping[str, Any]):
         self.forces = {e.name for e in model.force_elements if e.kind in DISSIPATIVE}
 
     def with_own(self, own: Mapping[str, Scalar]) -> Mapping[str, Scalar]:
-        """These names too, before all others."""
+        """The names of a component before all others."""
         return _Both(own, self)
 
     def __contains__(self, name: object) -> bool:
@@ -172,7 +207,7 @@ class _Names(Mapping[str, Any]):
         return _across(self._dag, branch) if kind == ACROSS else self._dag.symbol("Y", branch.name)
 
     def _edge(self, name: str) -> tuple[str, Branch] | None:
-        """What ``across(R1)`` or ``through(motor.electrical)`` means."""
+        """The edge of ``across(R1)`` or ``through(motor.electrical)``; None for other names."""
         kind, edge, part = variable_of(name) or ("", "", "")
         if kind not in ("across", "through") or part:
             return None
@@ -209,4 +244,4 @@ class _Both(Mapping[str, Any]):
 
 
 DISSIPATIVE = ("damper", "friction")
-"""Force elements that turn all they take in into heat."""
+"""Force elements that dissipate all the power they take in."""
