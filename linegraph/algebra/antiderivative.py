@@ -149,7 +149,7 @@ class _Rules:
         return None if self._varies(slope) or not self._residues(slope) else slope
 
     def _homogeneous(self, factors: Sequence[Node]) -> Scalar | None:
-        """Of degree p in one linear L, as ``|L| L`` and ``max(L, 0)^1.5``: ``L f / ((p + 1) L')``."""
+        """``L f / ((p + 1) L')`` for f of degree p in one linear L, as ``|L| L``, by Euler's theorem."""
         found = self._linear_in(factors)
         if found is None:
             return None
@@ -234,7 +234,7 @@ class _Rules:
         return self.of(inner) + self.of(function("max", function("max", 0, p - q), p - f))
 
     def _function(self, factors: Sequence[Node]) -> Scalar | None:
-        """A function of a linear argument."""
+        """An elementary function of a linear argument."""
         f = factors[0]
         if len(factors) != 1 or f.op in (SYMBOL, DIV) or f.b is not None:
             return None

@@ -185,7 +185,7 @@ class Calculus:
         return share, 1 - share
 
     def _share(self, op: str, a: Scalar, b: Scalar) -> Scalar:
-        """1 where min(a, b) or max(a, b) is a, which it is where both are the same; else 0."""
+        """1 where min(a, b) or max(a, b) is a, also where both are equal; else 0."""
         side = self.dag.function("sign", a - b if op == "max" else b - a)
         return 1 + side * (1 - side) / 2
 

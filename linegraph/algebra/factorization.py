@@ -108,6 +108,7 @@ def factored(rows: Sequence[Sequence[Scalar]], outward: Sequence[int]) -> Factor
     for place in reversed(range(size)):
         k = outward[place]
         pivots[k] = m[k][k]
+        # one division for each pivot: all other quotients, also those of `solve`, become products
         inverses[k] = 1 / pivots[k]
         inner = [i for i in outward[:place] if m[k][i] != 0]
         for i in inner:

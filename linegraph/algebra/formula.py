@@ -101,7 +101,7 @@ class Formula:
         return _apply(self.op, operands, algebra)
 
 
-@lru_cache(maxsize=4096)  # a model's expressions are read by all who ask what they name
+@lru_cache(maxsize=4096)  # a model's expressions are parsed again wherever their names are needed
 def parse(text: str) -> Formula:
     """Parse an expression.
 

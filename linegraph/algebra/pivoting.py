@@ -77,7 +77,7 @@ def without_inertia(M: Array, T: Array, rounding: float) -> list[Array]:
     kept: list[int] = []
     for k in range(len(R)):
         before = R[np.ix_(kept, kept)]
-        # scaled, since light and heavy bodies stand side by side
+        # scaled to a unit diagonal, since light and heavy bodies occur side by side
         scale = 1 / np.sqrt(np.diag(before))
         share = np.linalg.solve(before * scale * scale[:, None], R[kept, k] * scale) * scale
         if R[k, k] - R[kept, k] @ share > rounding * made_of[k]:
@@ -109,7 +109,8 @@ def apart_columns(J: Array, order: Sequence[int], most: int, apart: float) -> li
         if n == most:
             break
         rest, along = J[:, k], np.zeros(n)
-        for _ in range(2):  # the second time takes away what the first has left by rounding
+        # Gram-Schmidt twice: the second pass removes the components that rounding has left in the first
+        for _ in range(2):
             more = Q[:, :n].T @ rest
             rest, along = rest - Q[:, :n] @ more, along + more
         distance = float(np.linalg.norm(rest))

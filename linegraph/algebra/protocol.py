@@ -133,7 +133,7 @@ def _constant(function: str, x: Scalar) -> Scalar:
     if isinstance(x, (int, float, Fraction)):
         return getattr(math, function)(x)
     if isinstance(x, str):
-        # sympy would run it
+        # SymPy would evaluate a text as Python code
         raise ModelError("", "an angle takes numbers, parameters or sympy expressions, not text")
     import sympy
 

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from linegraph.algebra.scalar import Scalar
 
 PRIME = 2**61 - 1
+"""A Mersenne prime, large enough that two different residues are equal by chance with probability 4e-19."""
+
 CONSTANT = "c"
 """The argument of symbols that represent a number, given by the text of their place."""
 

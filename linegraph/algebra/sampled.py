@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from linegraph.algebra.scalar import Scalar
 
 EPS = 2.3e-16
+"""Machine epsilon of doubles, 2^-52, rounded up."""
+
 LOOSE = 16
 """The factor by which an error may exceed its bound."""
 

@@ -43,6 +43,8 @@ if TYPE_CHECKING:
     from linegraph.model.system import System
     from linegraph.networks import Network
 
+# an inertia edge weighs more than the six freedoms of a free joint; the other two only break ties, since
+# their sum is less than one freedom
 INERTIA_WEIGHT = 7.0
 NOTHING_ACTS = 0.3
 DEPTH = 0.2
@@ -156,7 +158,7 @@ def _coupled(model: System) -> list[str]:
 
 
 def _wanted(model: System, absolute: tuple[str, ...]) -> list[str]:
-    """Edges that must be branches: as the user says, and those that cannot be chords."""
+    """Edges that must be branches: those that the user requests, and those that cannot be chords."""
     inertia = (f"{name}/inertia" for name in absolute)
     components = {branch.name for branch in _network_edges(model)}
     chosen = (name for name in model.choices.tree if name not in components)

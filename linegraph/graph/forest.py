@@ -113,7 +113,7 @@ class Topology(Displayed):
                 while vertex in inward:
                     step = inward[vertex]
                     j = row_of[step.edge.name]
-                    # walking inward runs against a forward branch
+                    # a walk inward crosses a forward branch against its orientation
                     row[j] = row.get(j, 0) - sense * (1 if step.forward else -1)
                     vertex = step.near
             rows.append({j: value for j, value in sorted(row.items()) if value})
@@ -187,6 +187,7 @@ def choose_forest(
     part = {vertex: vertex for vertex in projection.vertices}
 
     def find(vertex: str) -> str:
+        # union-find; halving the paths keeps them short
         while part[vertex] != vertex:
             part[vertex] = part[part[vertex]]
             vertex = part[vertex]

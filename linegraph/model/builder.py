@@ -85,7 +85,7 @@ class Model(Shown, Words, Macros, Bounded, Snapshots):
         self.choices = Choices()
         self.outputs: list[Output] = []
         self.warnings: list[str] = []
-        self.source: str | None = None  # the file, and where it said what, for errors found later
+        self.source: str | None = None  # the file, and its lines by thing, for errors found later
         self.places: dict[str, int] = {}
         self._joints: dict[str, Joint] = {}
         self._couplings: dict[str, Coupling] = {}

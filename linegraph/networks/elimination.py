@@ -121,6 +121,7 @@ def _pivot(rows: Sequence[LinearRow], last: Collection[Symbol]) -> tuple[int, Sy
         for symbol, entry in row.entries.items():
             fill = (len(row.entries) - 1) * (columns[symbol] - 1)
             grade = _grade(entry)
+            # units first and `last` unknowns last, then the diagonal, then fill-in; ties in declared order
             foreign = str(symbol[1]).partition(".")[0] != row.owner
             cost = (min(grade, 1) + 10 * (symbol in last), foreign, fill, grade, place)
             if best is None or cost < best[0]:

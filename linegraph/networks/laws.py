@@ -130,7 +130,8 @@ def _evaluate(component: Component, at: At, laws: Laws) -> None:
         letter, unit, about = across.integral
         quantity = Quantity(f"{letter}_{component.name}", unit, f"{about} of {component.name}")
         laws.own.append(Own(key_of(at.x), quantity, at.X[-1]))
-    # of charges in proportion to what is kept energy and co-energy are the same
+    # if charges are linear in the kept variables, energy and co-energy are equal and the latter is shorter;
+    # otherwise the energy is the Legendre transform
     energy = 0 if component.name in laws.unknown else work if quadratic else stored - work
     laws.energy[component.name] = own_energy + energy
     laws.heat[component.name] = component.dissipation(at)

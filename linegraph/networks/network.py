@@ -165,7 +165,7 @@ class Network:
         try:
             resting = tuple(substitution(dag, dict.fromkeys(inputs, 0)).all(self.force))
         except (ArithmeticError, ModelError):
-            # an input that is divided by has no rest
+            # an input in a denominator cannot be set to zero
             return {"resting": self.force, "driven": (0,) * len(self.force), "all": self.force}
         pairs = zip(self.force, resting, strict=True)
         driven = tuple(self._added(row, rest) for row, rest in pairs)

@@ -173,7 +173,7 @@ def _run(evaluate: Evaluate, x: Vector, series: float, parallel: float) -> _Poin
             break
         done = at.rounding and not eased and found.gap > at.gap / 2
         at = found
-        # once it is rounding, go on while that still becomes less
+        # once all residuals are rounding, go on only while the largest is still halved
         if done:
             break
     return at
@@ -191,7 +191,7 @@ def _nearer(
     for _ in range(MOST_HALVINGS):
         ahead = [a + length * b for a, b in zip(at.x, step, strict=True)]
         found = evaluate(ahead, series, parallel)
-        # rows have roundings of their own: the largest residual need not fall where all become rounding
+        # each row has a rounding level of its own: the largest residual need not fall when all reach theirs
         if series == 0 and found.solved and not at.solved:
             return found
         if not found.steep and found.gap <= (1 - DECREASE * length) * at.gap:

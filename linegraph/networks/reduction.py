@@ -151,6 +151,7 @@ class Reduction:
         entries = [{s[1] for s in self._calculus.support(row) if s[0] == RATE} for row in rows]
         matched: dict[int, int] = {}
 
+        # a maximum matching of rows and columns, by augmenting paths
         def augment(row: int, seen: set[int]) -> bool:
             for column in sorted(entries[row]):
                 if column in seen or column not in columns:

@@ -75,7 +75,8 @@ def select(
     weights = _weights(branches, laws, judge, names)
     for name in wanted:
         if name in weights and name not in names:
-            weights[name] -= 0.4  # before its like: nonlinear laws stay where they can be solved
+            # within its class only: nonlinear laws stay where they can be solved
+            weights[name] -= 0.4
     topologies = tuple(choose_forest(p, weights, (GROUND,)) for p in projections)
     chosen = tuple(store for store in laws.stores if store.edge in names)
     return Selection(chosen, dependent, determined, topologies)

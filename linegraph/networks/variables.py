@@ -76,7 +76,7 @@ class At:
         self.x = dag.symbol("s" if self.integrated else "x", place)
         self._laws, self._names, self._ways = laws, names, ways
         self._who = f'{component.kind} "{component.name}"'
-        # in a joint called x, x is one number, whether the component's own or the coordinate
+        # for a joint called x, the component's x and the coordinate are the same number
         self._joint = getattr(component, "joint", None)
 
     def value(self, given: Any, **own: Scalar) -> Scalar:

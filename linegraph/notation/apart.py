@@ -46,7 +46,7 @@ def _alike(found: dict[str, Name]) -> set[str]:
     for writer in (Plain(), Latex(), MathMl()):
         looks: dict[str, list[str]] = {}
         for key, name in found.items():
-            # how a word is set apart is no difference that a reader sees
+            # a reader sees no difference between the two commands for italics
             looks.setdefault(writer(name).replace(r"\textit", r"\mathit"), []).append(key)
         alike |= {key for keys in looks.values() if len(keys) > 1 for key in keys}
     return alike

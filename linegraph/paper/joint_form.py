@@ -191,6 +191,7 @@ def _central(link: Link) -> tuple[Scalar, Vector, Inertia]:
             )
         return m, ZERO, link.moments.inertia
     x, y, z = (component / m for component in first)
+    # Steiner's theorem, from the origin back to the mass centre
     return (
         m,
         (x, y, z),

@@ -68,6 +68,7 @@ def second_moments(inertia: Inertia) -> Inertia:
 def _less(a: Scalar, b: Scalar, c: Scalar) -> Scalar:
     """``a + b - c``, without the two that are the same, which would take digits of the third."""
     if all(isinstance(x, (int, float)) for x in (a, b, c)):
+        # exact up to one rounding: for a slender body the moments nearly cancel
         return math.fsum((a, b, -c))
     if c in (a, b):
         return b if c == a else a
@@ -160,7 +161,7 @@ def carried_in_plane(moments: Moments, rotation: Rotation, at: Vector) -> Moment
     b = rotation.out(moments.first)
     first = vector.add(b, vector.scale(moments.mass, at))
     about = moments.inertia[5]
-    # one after the other: with the first, the sum is what M has beside its diagonal
+    # in two steps, because the first sum also is an entry of M beside the diagonal, and is then shared
     about = about + (at[0] * b[0] + at[1] * b[1])
     about = about + (at[0] * first[0] + at[1] * first[1])
     return Moments(moments.mass, first, (about, 0, 0, 0, 0, 0), (None, None, about))

@@ -240,7 +240,7 @@ class Rotation:
         return known
 
     def inverse(self) -> Rotation:
-        """``R^T``: the outer frame's axes take the place of the inner frame's."""
+        """The inverse rotation ``R^T``, which maps outer components to inner ones."""
         return Rotation(tuple(factor.inverse() for factor in reversed(self.factors)))
 
     def __matmul__(self, inner: Rotation) -> Rotation:
