@@ -1,8 +1,9 @@
 """Solution of M v̇ = r by M = L^T D L over any algebra, structural zeros skipped.
 
 Eliminated from the leaves to the root, the mass matrix of a kinematic tree has factors without fill-in: L has
-no more non-zeros than M itself, since only ancestors of a joint are coupled with it [Featherstone 2005].
-Elimination from the root, as in the usual Cholesky factorisation, would fill L.
+no more non-zeros than M itself, since only ancestors of a joint are coupled with it [Featherstone 2005;
+Featherstone 2008, sec. 6.5]. The usual Cholesky factorisation eliminates from the root, and fills L where the
+tree branches.
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""Constraints hidden in the equations of a network, which fix states: index reduction until 𝓜 is regular."""
+"""Constraints hidden in the equations of a network, which fix states: index reduction until 𝓜 is regular.
+
+Whether 𝓜 is singular is decided by exact rank. A structural test [Pantelides 1988] looks at which entries are
+zero only, and misses rows that depend on each other by their values.
+"""
 
 from __future__ import annotations
 
