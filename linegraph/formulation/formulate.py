@@ -174,7 +174,8 @@ def edge_weights(model: System, projection: Projection) -> dict[str, float]:
         projection: its graph in translation, for the distance of each edge from ground.
 
     Returns:
-        Weights by name of edge: freedoms plus fractions less than 1 for the rules that break ties.
+        Weights by name of edge: freedoms plus a fraction of 1 by the rules that break ties; infinite for
+        force elements and constraints.
     """
     acting = {e.joint for e in model.elements if isinstance(e, Element) and e.joint is not None}
     depth = _depths(projection)

@@ -88,7 +88,7 @@ class Network:
 
     @cached_property
     def symmetric(self) -> bool:
-        """Whether 𝓜 is symmetric, as it must be if only controlled sources generate power."""
+        """Whether 𝓜 is symmetric. Controlled sources, which may generate power, can make it unsymmetric."""
         residues = Residues()
         return all(
             residues(entry) == residues(self.mass.get((j, i), 0))

@@ -118,7 +118,7 @@ class Reduction:
     def _fixed(self, rest: Scalar, gone: set[int]) -> tuple[int, Scalar]:
         """The index of the state that a constraint fixes, and its value.
 
-        The last state in whose slope no state occurs is taken.
+        It is the last state whose slope is not zero and contains no state.
 
         Raises:
             ModelError: the constraint fixes no state.
