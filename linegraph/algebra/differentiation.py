@@ -297,7 +297,7 @@ class TermSizes:
 
 
 def _same(size: Scalar, value: Scalar) -> bool:
-    """Whether a size is that of one term: there is no error but rounding of the number itself."""
+    """Whether a size is that of one term, whose only error is the rounding of the number itself."""
     return size is value or not (isinstance(size, Node) or isinstance(value, Node))
 
 

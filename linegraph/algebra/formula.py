@@ -34,10 +34,10 @@ DEEPEST = 100
 MOST_NODES = 5_000
 LARGEST_POWER = 64
 LARGEST_EXPONENT = 300
-"""Decimal exponent of a literal."""
+"""The largest decimal exponent of a literal, of either sign."""
 
 LONGEST_NUMBER = 100
-"""Characters of a literal."""
+"""The largest number of characters of a literal."""
 
 CONSTANTS = {"pi": math.pi}
 RATE = "der"

@@ -258,7 +258,7 @@ def _lever(s: Vectors, h: Integers, c: Vectors, k: Vectors) -> Vectors:
 
 
 def _carried_mass(h: Integers, bodies: list[Resolved]) -> list[list[Scalar]]:
-    """H m H^T: the mass that two joints have in common beyond them."""
+    """H m H^T: for each pair of joints the mass that both carry."""
     n = range(len(h))
     return [[sum(h[x][i] * bodies[i].mass * h[y][i] for i in n) for y in n] for x in n]
 

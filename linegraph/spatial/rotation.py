@@ -19,7 +19,7 @@ Inertia = tuple[Scalar, Scalar, Scalar, Scalar, Scalar, Scalar]
 """A symmetric tensor: (xx, xy, xz, yy, yz, zz)."""
 
 Diagonal = tuple[Scalar | None, Scalar | None, Scalar | None]
-"""The entries xx, yy, zz of a tensor, those that are known."""
+"""The entries xx, yy, zz of a tensor; None where unknown."""
 
 IDENTITY_MATRIX: Matrix = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 _PLACE = ((0, 1, 2), (1, 3, 4), (2, 4, 5))
@@ -268,7 +268,7 @@ def rotation_of(m: Matrix) -> Rotation:
 
 
 ROUNDING = 4e-15
-"""Of products of a rotation's rows."""
+"""The rounding error of the products of a rotation's rows."""
 
 _ROOTS = (math.sqrt(0.5), math.sqrt(0.75))
 _EXACT = (0, 1, -1, 0.5, -0.5, *_ROOTS, *(-x for x in _ROOTS))
