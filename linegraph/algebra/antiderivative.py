@@ -64,6 +64,7 @@ def antiderivative(calculus: Calculus, f: Scalar, by: Symbol) -> Scalar | None:
         at_zero = substitution(calculus.dag, {by: 0})(found)
     except (ArithmeticError, ModelError):
         return found
+    # the value at zero may be symbolic and infinite: it is subtracted only if it surely is not
     sure = not isinstance(at_zero, Node) or not _has_pole(calculus, found, by)
     return found - at_zero if sure else found
 
@@ -163,6 +164,7 @@ class _Rules:
                 return None
             degree += own
         if degree == -1:
+            # f is a multiple of 1 / L, and p + 1 would be divided by
             size = self._dag.function("abs", linear)
             return linear * f * self._dag.function("log", size) / slope
         above = degree + 1

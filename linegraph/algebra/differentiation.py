@@ -169,7 +169,7 @@ class Calculus:
         return found[0]
 
     def _side(self, x: Scalar) -> Scalar:
-        """1 where x is not negative, else -1."""
+        """1 where x is not negative, else -1; sign(x) alone would be 0 at the kink."""
         sign = self.dag.function("sign", x)
         return sign + (1 - sign * sign)
 
@@ -185,7 +185,7 @@ class Calculus:
         return share, 1 - share
 
     def _share(self, op: str, a: Scalar, b: Scalar) -> Scalar:
-        """1 where min(a, b) or max(a, b) is a, also where both are equal; else 0."""
+        """1 where min(a, b) or max(a, b) is a, also where both are equal; else 0. The DAG has no branches."""
         side = self.dag.function("sign", a - b if op == "max" else b - a)
         return 1 + side * (1 - side) / 2
 

@@ -214,6 +214,7 @@ class _Reader:
         """A literal as an exact number, its size checked on the text."""
         if type(node.value) not in (int, float):
             raise self._error(node, "only numbers, names, operators and functions may stand here")
+        # the size is checked first: an exact 1e999999999 has a billion digits
         text = ast.get_source_segment(self._text.strip(), node) or ""
         if "_" in text or text[:2].lower() in ("0x", "0o", "0b"):
             raise self._error(node, "write numbers as decimals, such as 1500 or 1.5e3")

@@ -62,6 +62,7 @@ class Jet:
     __rmul__ = __mul__
 
     def __truediv__(self, other: Scalar) -> Jet:
+        # x y differentiated twice, solved for the derivatives of x: the quotient is reused
         y = lifted(other)
         x = self.x / y.x
         dx = (self.dx - x * y.dx) / y.x

@@ -46,6 +46,7 @@ def _eliminated(J: Array, most: int) -> tuple[Array, int, Array]:
     for k in range(most):
         rest = np.abs(A[k:, k:])
         i, j = (k + int(x) for x in np.unravel_index(np.argmax(rest), rest.shape))
+        # not ">": a NaN ends the elimination, too
         if not abs(A[i, j]) > DEPENDENT:
             return A, k, columns
         A[[k, i]] = A[[i, k]]

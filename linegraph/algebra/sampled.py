@@ -120,6 +120,7 @@ def traced(node: Any, values: Sequence[float], errors: Sequence[float]) -> Scala
         values: at the samples.
         errors: bounds of their absolute errors; `LOOSE` times as much is allowed.
     """
+    # the first sample proposes the integer, all of them have to agree
     nearest = round(values[0]) if abs(values[0]) < LARGEST else 0
     if all(abs(v - nearest) <= LOOSE * e for v, e in zip(values, errors, strict=True)):
         return nearest

@@ -195,7 +195,7 @@ def edge_weights(model: System, projection: Projection) -> dict[str, float]:
 
 
 def _depths(projection: Projection) -> dict[str, int]:
-    """The number of edges from ground to each vertex, without inertia edges."""
+    """The number of edges from ground to each vertex; inertia edges, which start there, do not count."""
     near: dict[str, list[str]] = {vertex: [] for vertex in projection.vertices}
     for edge in projection.edges:
         if not edge.name.endswith("/inertia"):

@@ -86,6 +86,7 @@ class Topology(Displayed):
         for step in self.walk:
             row: dict[int, int] = {}
             sign = 1 if step.forward else -1
+            # a chord with both ends beyond the cut is counted twice with opposite signs, and cancels
             for vertex in beyond[step.far]:
                 for edge, entering in touching.get(vertex, ()):
                     j = column[edge.name]
@@ -183,6 +184,7 @@ def choose_forest(
     for name in wanted:
         if name not in names:
             raise ModelError(f'branch "{name}"', "there is no edge of that name")
+    # requested branches come first, whatever they weigh
     order = sorted(projection.edges, key=lambda e: (e.name not in wanted, weights.get(e.name, 0.0)))
     part = {vertex: vertex for vertex in projection.vertices}
 

@@ -100,6 +100,7 @@ def add_basement(model: Builder, position: Any, rotation: Any) -> BodyHandle:
     """
     place = (BY_INPUT,) * 3 if position == BY_INPUT else vector(position or ZERO, BASEMENT)
     turns, angles = _turns({"rpy": BY_INPUT} if rotation == BY_INPUT else rotation or {})
+    # slides come first, so that the position is in ground axes
     parts = (*_SLIDES, *turns)
     handle = model.body(BASEMENT)
     drive = (*place, *angles)
@@ -119,6 +120,7 @@ def _turns(rotation: Mapping[str, Any]) -> tuple[tuple[Any, ...], tuple[Any, ...
         raise ModelError(BASEMENT, "rotation takes axis and angle, or rpy")
     rpy = rotation["rpy"]
     roll, pitch, yaw = (BY_INPUT,) * 3 if rpy == BY_INPUT else vector(rpy, BASEMENT)
+    # roll, pitch, yaw about fixed x, y, z equal yaw, pitch, roll about moving z, y, x
     order = (("yaw", "z"), ("pitch", "y"), ("roll", "x"))
     parts = tuple(("revolute", _AXES[axis], {"name": name}) for name, axis in order)
     return parts, (yaw, pitch, roll)

@@ -95,6 +95,7 @@ class _Derivation:
 
     def network(self) -> Network:
         """Derive rates, rows, dependent stores and constraints, and collect them."""
+        # rates that static laws give are written as such, so that 𝓜 stays symmetric
         for own in self._laws.own:
             rate = self._put(own.rate)
             if not any(kind == DUAL for kind, _ in self._calculus.support(rate)):

@@ -52,6 +52,7 @@ def laws_of(model: System, branches: Sequence[Branch], projections: Sequence[Pro
     by_component: dict[str, list[Branch]] = {}
     for branch in branches:
         by_component.setdefault(branch.component.name, []).append(branch)
+    # losses name the heat of other components, which has to be known first
     ordered = [c for c in model.components if c.kind != "losses"]
     ordered += [c for c in model.components if c.kind == "losses"]
     for component in ordered:
@@ -101,6 +102,7 @@ def _evaluate(component: Component, at: At, laws: Laws) -> None:
     driven = changing(component, at.branches, calculus, (work, own_energy, *(charges or ())))
     if driven:
         laws.driven[component.name] = driven
+    # the force with which a co-energy pushes: without it, moving the port would make energy from nothing
     pushed = calculus.derivative(work, key_of(at.x)) if component.displaced else 0
     kept_keys = {
         key_of((at.X, at.Y)[b.kept != ACROSS][k]) for k, b in enumerate(at.branches) if b.kept

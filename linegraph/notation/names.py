@@ -116,6 +116,7 @@ def names_of(derivation: Derived) -> dict[str, Name]:
     found: dict[str, Name] = {}
     tree, model = derivation.structure, derivation.system
     for place, parameter in enumerate(model.parameters.values()):
+        # the unit tells masses and stiffnesses from lengths, which come after them among factors
         unit = parameter.unit
         role = MASS if "kg" in unit or "N" in unit else LENGTH
         role = GRAVITY if unit in ("m/s^2", "m/s²") else role

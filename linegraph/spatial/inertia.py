@@ -66,7 +66,7 @@ def second_moments(inertia: Inertia) -> Inertia:
 
 
 def _less(a: Scalar, b: Scalar, c: Scalar) -> Scalar:
-    """``a + b - c``; if c is the same node as a or b, the two are left out, since they would round the other."""
+    """``a + b - c``; where c is the same node as a or b, these two would only round the other one."""
     if all(isinstance(x, (int, float)) for x in (a, b, c)):
         # exact up to one rounding: for a slender body the moments nearly cancel
         return math.fsum((a, b, -c))

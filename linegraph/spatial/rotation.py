@@ -388,6 +388,7 @@ def from_quaternion(x: Scalar, y: Scalar, z: Scalar, w: Scalar) -> Matrix:
         z: coefficient of k.
         w: the scalar part.
     """
+    # doubled once, instead of a factor 2 in each of nine products
     x2, y2, z2 = x + x, y + y, z + z
     xx, yy, zz = x * x2, y * y2, z * z2
     xy, xz, yz = x * y2, x * z2, y * z2
