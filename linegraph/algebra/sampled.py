@@ -49,7 +49,7 @@ class Traced:
     __slots__ = ("errors", "node", "values")
 
     def __init__(self, node: Any, values: Sequence[float], errors: Sequence[float]) -> None:
-        """Keep the three as they are; `traced` replaces integers by numbers first."""
+        """Keep the three as they are; `traced` replaces scalars that are integers by numbers first."""
         self.node = node
         self.values = tuple(values)
         self.errors = tuple(errors)

@@ -63,7 +63,15 @@ class At:
         names: _Names,
         ways: Mapping[tuple[str, str], list[tuple[str, int]]],
     ) -> None:
-        """Create the symbols in the network's DAG."""
+        """Create the symbols in the network's DAG.
+
+        Args:
+            component: whose laws are to be evaluated.
+            branches: its edges, one for each port.
+            laws: of the network, with its DAG.
+            names: all names that laws may use.
+            ways: from each vertex to ground, by (domain, vertex): edges with signs.
+        """
         dag = laws.dag
         self.branches = branches
         self.X = [_across(dag, branch) for branch in branches]

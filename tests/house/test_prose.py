@@ -119,11 +119,28 @@ def without_args(found: Iterable[Public], known: dict[str, list[str]]) -> list[s
     ]
 
 
+def undescribed_constructors(found: Iterable[Public]) -> list[str]:
+    """Classes whose constructor takes two or more arguments that neither docstring describes."""
+    names = []
+    for x in found:
+        for made in x.node.body if isinstance(x.node, ast.ClassDef) else ():
+            if isinstance(made, ast.FunctionDef) and made.name == "__init__":
+                words = f"{x.doc} {ast.get_docstring(made)}".split()
+                if parameters(made) >= FEWEST_ARGUMENTS and not {"Args:", "Attributes:"} & {*words}:
+                    names.append(x.name)
+    return names
+
+
 def offenders() -> dict[str, list[str]]:
     """By package, the public names whose docstrings break a rule."""
     known = bases(parsed(path) for path in files().values())
     sorted_by_room: dict[str, list[str]] = {}
-    for name in (*terse(everything()), *without_args(everything(), known)):
+    found = everything()
+    for name in (
+        *terse(found),
+        *without_args(found, known),
+        *undescribed_constructors(found),
+    ):
         module = next(m for m in sorted(files(), key=len, reverse=True) if name.startswith(f"{m}."))
         sorted_by_room.setdefault(room(module), []).append(name)
     return sorted_by_room
@@ -193,6 +210,21 @@ class Derived(Base):
 
 def short(a):
     """The sum."""
+
+class Made:
+    """Made of two arguments."""
+    def __init__(self, a, b):
+        """Keep them both here."""
+
+class Described:
+    """Made of two arguments.
+
+    Attributes:
+        a: one.
+        b: another.
+    """
+    def __init__(self, a, b):
+        """Keep them both here."""
 '''
 
 
@@ -201,3 +233,4 @@ def test_the_search_for_terse_docstrings_and_missing_arguments_finds_them() -> N
     found = list(public(tree, "m"))
     assert terse(found) == ["m.short"]
     assert without_args(found, bases([tree])) == ["m.Derived.bare"]
+    assert undescribed_constructors(found) == ["m.Made"]
