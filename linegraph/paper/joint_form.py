@@ -1,8 +1,7 @@
 """The paper's matrices with one row and column for each joint, multiplied out: P, H, C, S, K and (13)-(15).
 
-They are there to be read, and to prove the recursive derivation of `dynamics.inverse_dynamics`, which is what
-gets emitted. Vectors are resolved in ground axes [Boiadzhiev and Lilov 1993]; `star_form` has their star
-tree.
+They are meant to be read, and to prove the recursive derivation in `dynamics.orthogonality`, from which code
+is emitted. Vectors are resolved in ground axes [Boiadzhiev and Lilov 1993]; `star_form` has their star tree.
 
 A moving basement, and any other joint in prescribed motion, is a link like the others. It has no row in S and
 K; its motion enters the right-hand side, as ω̇_0 in ε and as r̈_0 in G.

@@ -1,7 +1,7 @@
 """The paper's inverse scheme on its star tree: every variable of every edge once v̇ is known.
 
 [Boiadzhiev and Lilov 1993] only mention it. Written out, it is the circuit equations forward, H^T, and the
-cutset equations back, H. It is there to be read and for proof; `dynamics.edge_variables` is what gets
+cutset equations back, H. It is meant to be read, and to prove `dynamics.edge_variables`, from which code is
 emitted.
 """
 

@@ -104,8 +104,9 @@ def round_apart(head: Moments) -> tuple[Moments, Moments]:
 def carried(moments: Moments, rotation: Rotation, at: Vector) -> Moments:
     """Moments about another origin and in other axes.
 
-    With b the rotated first moment and f = b + m at that about the outer origin, the second moments gain
-    at b^T + f at^T. This contains Steiner's term m at at^T, so that the mass centre is not needed.
+    With a the position `at`, b the rotated first moment and f = b + m a the first moment about the outer
+    origin, the second moments gain a b^T + f a^T. This contains Steiner's term m a a^T, so that the mass
+    centre is not needed.
 
     Args:
         moments: about the inner origin, in inner axes.
@@ -147,7 +148,7 @@ def _about(moments: Moments, rotation: Rotation, at: Vector, twice: Vector) -> D
 def carried_in_plane(moments: Moments, rotation: Rotation, at: Vector) -> Moments:
     """The same as `carried` for a planar motion, of which only the inertia about z counts.
 
-        J_zz + 2 at . b + m at . at        with b the rotated first moment, products over x and y
+        J_zz + 2 a . b + m a . a        with a and b as there, products over x and y
 
     Args:
         moments: about the inner origin.
