@@ -8,29 +8,29 @@ among the states, which are solved and differentiated until it is regular.
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from linegraph.algebra.differentiation import Replay, substitution
+from linegraph.algebra.differentiation import substitution
 from linegraph.algebra.residues import Residues
 from linegraph.components.domains import DOMAINS
 from linegraph.components.scalar.branches import dangling, edges_of, projections
 from linegraph.errors import ModelError
-from linegraph.ir.program import Quantity
 from linegraph.networks.laws import laws_of
 from linegraph.networks.network import RATE, SHAFT_RATE, Network, State
 from linegraph.networks.rates import Rates
 from linegraph.networks.reduction import Reduction
 from linegraph.networks.selection import select
+from linegraph.networks.state_names import domain_of, states_of, variable_name
 from linegraph.networks.static import DUAL, Solver, pruned, substituting
 
 INTERFACES = ("rotational_interface", "translational_interface")
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
-    from linegraph.algebra.differentiation import Symbol
+    from linegraph.algebra.differentiation import Replay, Symbol
     from linegraph.algebra.scalar import Scalar
-    from linegraph.components.domains import Domain
     from linegraph.components.scalar.branches import Branch
     from linegraph.model.system import System
     from linegraph.networks.law_records import Laws, StoreLaw
@@ -73,6 +73,33 @@ def _require_places(model: System, branches: Sequence[Branch]) -> None:
             raise ModelError(who, f'joint "{branch.port.joint}" is none of one freedom that {word}')
 
 
+@dataclass(frozen=True)
+class _Draft:
+    """A network between two passes.
+
+    Attributes:
+        states: those that are left.
+        rows: expressions that are zero, linear in the rates of states and of ports in mechanics.
+        variables: (X, Y) by edge.
+        complete: a scalar of the laws in terms of states, inputs and rates.
+        later: replaces states that constraints fix; None before they are found.
+        number: gives rates their final numbers; None before.
+    """
+
+    states: Sequence[State]
+    rows: Sequence[Scalar]
+    variables: Mapping[str, tuple[Scalar, Scalar]]
+    complete: Callable[[Scalar], Scalar]
+    later: Replay | None = None
+    number: Replay | None = None
+
+    def last(self, x: Scalar) -> Scalar:
+        """A scalar of the laws as it is after all passes."""
+        assert self.later is not None
+        assert self.number is not None
+        return self.number(self.later(self.complete(x)))
+
+
 class _Derivation:
     """Derives 𝓜 and f from the values of the static variables."""
 
@@ -88,53 +115,89 @@ class _Derivation:
         self._selection, self._statics = selection, statics
         self._dag, self._calculus = laws.dag, laws.calculus
         self._residues = Residues()
-        self._states = self._listed()
+        self._states = states_of(model, branches, laws, selection)
         self._rates = Rates(self._first, self._calculus, self._states, selection.dependent)
         self._place = self._rates.places
         self._valued = substituting(laws, statics.kirchhoff, statics.values)
 
     def network(self) -> Network:
-        """Derive rates, rows, dependent stores and constraints, and collect them."""
-        # rates that static laws give are written as such, so that 𝓜 stays symmetric
+        """Pass by pass: rows over all states, dependent stores, constraints, 𝓜 and f."""
+        self._enter_own_rates()
+        self._require_known_loops()
+        draft = self._drafted()
+        draft = self._with_spatial_stores(draft)
+        draft = self._reduced(draft)
+        draft = self._renumbered(draft)
+        found = self._collected(draft)
+        self._require_order(found)
+        return found
+
+    # -- the passes
+
+    def _enter_own_rates(self) -> None:
+        """Write rates that static laws give as such, so that 𝓜 stays symmetric."""
         for own in self._laws.own:
             rate = self._put(own.rate)
             if not any(kind == DUAL for kind, _ in self._calculus.support(rate)):
                 self._rates.known[own.key] = rate
+
+    def _require_known_loops(self) -> None:
+        """Refuse algebraic loops of variables that only rates determine."""
         for residual in self._statics.residuals:
             for kind, place in self._calculus.support(residual):
                 if kind == DUAL:
                     raise self._rates.too_deep(kind, place)
-        duals = self._duals()
-        complete = substitution(self._dag, duals)
+
+    def _drafted(self) -> _Draft:
+        """Rows and variables over all states, dependent stores replaced by the rates that determine them."""
+        replaced = substitution(self._dag, self._duals())
+
+        def complete(x: Scalar) -> Scalar:
+            return replaced(self._put(x))
+
         variables = {
-            b.name: (complete(self._put(self._across(b))), complete(self._put(self._through(b))))
-            for b in self._branches
+            b.name: (complete(self._across(b)), complete(self._through(b))) for b in self._branches
         }
-        rows = [complete(row) for row in self._rows()]
+        return _Draft(self._states, replaced.all(self._rows()), variables, complete)
+
+    def _with_spatial_stores(self, draft: _Draft) -> _Draft:
+        """Stores whose edges lie in 3-D mechanics: their rates are accelerations there."""
+        variables = dict(draft.variables)
         for store in self._laws.spatial:
             x, _ = variables[store.edge]
-            own = self._rates.of(self._put(store.charge)) + complete(self._put(store.rest))
+            own = self._rates.of(self._put(store.charge)) + draft.complete(store.rest)
             variables[store.edge] = (x, own)
+        return replace(draft, variables=variables)
+
+    def _reduced(self, draft: _Draft) -> _Draft:
+        """Constraints among states solved and differentiated until 𝓜 is regular."""
+        rows, variables = list(draft.rows), dict(draft.variables)
         reduction = Reduction(self._rates, self._calculus, self._states, self._owners())
         gone = reduction.reduce(rows, variables)
-        later = reduction.later
-        states = tuple(s for k, s in enumerate(self._states) if k not in gone)
-        ports = [b for b in self._branches if b.port.spatial]
-        rows += [variables[port.name][1] for port in ports]
-        renumbered = self._renumbered(states)
-        rows = renumbered.all(rows)
-        variables = {name: (renumbered(x), renumbered(y)) for name, (x, y) in variables.items()}
-        rates = self._input_rates([*rows, *(x for pair in variables.values() for x in pair)])
-        mass, force = self._split(rows, len(states), [port.name for port in ports])
+        states = [s for k, s in enumerate(draft.states) if k not in gone]
+        return replace(draft, states=states, rows=rows, variables=variables, later=reduction.later)
 
-        def put(given: Mapping[str, Scalar]) -> dict[str, Scalar]:
-            return {k: renumbered(later(complete(self._put(x)))) for k, x in given.items()}
+    def _renumbered(self, draft: _Draft) -> _Draft:
+        """Rates numbered by the states that are left; the rows of ports in mechanics last."""
+        new = {self._place[state.key]: k for k, state in enumerate(draft.states)}
+        values = {(RATE, old): self._dag.symbol(RATE, k) for old, k in new.items()}
+        number = substitution(self._dag, values)
+        rows = number.all([*draft.rows, *(draft.variables[b.name][1] for b in self._ports)])
+        variables = {name: (number(x), number(y)) for name, (x, y) in draft.variables.items()}
+        return replace(draft, rows=rows, variables=variables, number=number)
 
-        found = Network(
+    def _collected(self, draft: _Draft) -> Network:
+        """𝓜, f and all that is told of the network."""
+        variables, later = dict(draft.variables), draft.later
+        assert later is not None
+        rates = self._input_rates([*draft.rows, *(x for pair in variables.values() for x in pair)])
+        ports = [port.name for port in self._ports]
+        mass, force = self._split(draft.rows, len(draft.states), ports)
+        return Network(
             self._laws,
             tuple(self._branches),
             self._selection.topologies,
-            states,
+            tuple(draft.states),
             mass,
             tuple(force),
             variables,
@@ -143,14 +206,18 @@ class _Derivation:
             self._selection.dependent,
             rates,
             self._remarks(rates),
-            put(self._laws.energy),
-            put(self._laws.heat),
-            frozenset(n for n in {*self._model.domains, *DOMAINS} if not self._domain(n).power),
-            tuple(self._called(symbol) for symbol in self._statics.loop),
+            {name: draft.last(x) for name, x in self._laws.energy.items()},
+            {name: draft.last(x) for name, x in self._laws.heat.items()},
+            frozenset(
+                n for n in {*self._model.domains, *DOMAINS} if not domain_of(self._model, n).power
+            ),
+            tuple(variable_name(self._model, self._branches, x) for x in self._statics.loop),
             tuple(later.all(self._statics.eased)),
         )
-        self._require_order(found)
-        return found
+
+    @property
+    def _ports(self) -> list[Branch]:
+        return [b for b in self._branches if b.port.spatial]
 
     @property
     def _who(self) -> str:
@@ -176,48 +243,6 @@ class _Derivation:
         return pruned(x, self._calculus, self._residues, lambda symbol: symbol[0] == DUAL)
 
     # -- states and their rates
-
-    def _listed(self) -> list[State]:
-        """The states in the order of the components; a component's stored variables before its own states."""
-        order = {c.name: k for k, c in enumerate(self._model.components)}
-        branch = {b.name: b for b in self._branches}
-        found: list[tuple[int, State]] = []
-        for store in self._selection.states:
-            b = branch[store.edge]
-            domain = self._domain(b.port.domain)
-            variable = domain.across if store.key[0] == "X" else domain.through
-            where = "across" if store.key[0] == "X" else "through"
-            name = f"{variable.letter}_{self._short(b, store)}"
-            about = f"{variable.name} {where} {store.edge}"
-            found.append(
-                (order[b.component.name], State(Quantity(name, variable.symbol, about), store.key))
-            )
-        for own in self._laws.own:
-            component = str(own.key[1]).partition(".")[0]
-            found.append((order[component], State(own.quantity, own.key)))
-        return [state for _, state in sorted(found, key=lambda pair: pair[0])]
-
-    def _called(self, symbol: Symbol) -> str:
-        """The name of an across or through variable, with the letter of its domain."""
-        kind, edge = symbol
-        branch = next(b for b in self._branches if b.name == edge)
-        domain = self._domain(branch.port.domain) if branch.port.domain else None
-        letter = {"X": "across", "Y": "through"}[kind]
-        if domain is not None:
-            letter = domain.across.letter if kind == "X" else domain.through.letter
-        return f"{letter}_{edge.replace('.', '_')}"
-
-    def _short(self, branch: Branch, store: StoreLaw) -> str:
-        """The component's name, or the edge's if the component stores several variables in one domain."""
-        alike = [
-            b
-            for b in self._branches
-            if b.component is branch.component and b.kept and b.port.domain == branch.port.domain
-        ]
-        return branch.component.name if len(alike) == 1 else store.edge.replace(".", "_")
-
-    def _domain(self, name: str) -> Domain:
-        return self._model.domains.get(name) or DOMAINS[name]
 
     def _across(self, branch: Branch) -> Scalar:
         return self._dag.symbol("w" if branch.port.spatial else "X", branch.name)
@@ -266,11 +291,6 @@ class _Derivation:
 
     def _dual(self, store: StoreLaw) -> Scalar:
         return self._dag.symbol(*store.dual)
-
-    def _renumbered(self, states: Sequence[State]) -> Replay:
-        new = {self._place[state.key]: k for k, state in enumerate(states)}
-        values = {(RATE, old): self._dag.symbol(RATE, k) for old, k in new.items()}
-        return substitution(self._dag, values)
 
     def _split(
         self, rows: Sequence[Scalar], count: int, ports: Sequence[str]

@@ -26,7 +26,7 @@ from linegraph.networks.stored import changing, coenergy_of, own_energy_of
 from linegraph.networks.variables import At, _Names, key_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from linegraph.algebra.scalar import Scalar
     from linegraph.components.scalar.branches import Branch
@@ -92,38 +92,69 @@ def _evaluate(component: Component, at: At, laws: Laws) -> None:
     """Enter one component's static laws, stores, states, energy and heat."""
     calculus = laws.calculus
     charges = component.charges(at)
-    work = (
-        component.kept_coenergy(at)
-        if charges is None
-        else coenergy_of(component, at, laws, charges)
-    )
-    zeros = component.laws(at)
+    if charges is None:
+        work = component.kept_coenergy(at)
+        slopes = [calculus.derivative(work, key_of(x)) for x in _kept(at)]
+        charges_of_ports = dict(zip(_storing(at), slopes, strict=True))
+    else:
+        work = coenergy_of(component, at, laws, charges)
+        charges_of_ports = {k: charges[k] for k in _storing(at)}
+    zeros = list(component.laws(at))
     own_energy = own_energy_of(component, at, laws)
     driven = changing(component, at.branches, calculus, (work, own_energy, *(charges or ())))
     if driven:
         laws.driven[component.name] = driven
-    # the force with which a co-energy pushes: without it, moving the port would make energy from nothing
-    pushed = calculus.derivative(work, key_of(at.x)) if component.displaced else 0
-    kept_keys = {
-        key_of((at.X, at.Y)[b.kept != ACROSS][k]) for k, b in enumerate(at.branches) if b.kept
-    }
-    stored: Scalar = 0
-    quadratic = substitute(work, laws.dag, dict.fromkeys(kept_keys, 0)) == 0
+    if component.displaced:
+        # the force with which a co-energy pushes: without it, moving the port would make energy from nothing
+        pushed = calculus.derivative(work, key_of(at.x))
+        zeros = [z + pushed if _mechanical(component, k) else z for k, z in enumerate(zeros)]
+    _enter_ports(component, at, laws, charges_of_ports, zeros)
+    _enter_states(component, at, laws)
+    # of charges in proportion to what is kept energy and co-energy are the same
+    energy: Scalar = 0
+    if component.name not in laws.unknown:
+        kept = {key_of(x) for x in _kept(at)}
+        quadratic = substitute(work, laws.dag, dict.fromkeys(kept, 0)) == 0 and all(
+            _proportional(charge, kept, laws) for charge in charges_of_ports.values()
+        )
+        stored = sum(x * y for x, y in zip(_kept(at), charges_of_ports.values(), strict=True))
+        energy = work if quadratic else stored - work
+    laws.energy[component.name] = own_energy + energy
+    laws.heat[component.name] = component.dissipation(at)
+
+
+def _storing(at: At) -> list[int]:
+    """The ports of a component that keep a variable."""
+    return [k for k, branch in enumerate(at.branches) if branch.kept != STATIC]
+
+
+def _kept(at: At) -> list[Scalar]:
+    """The variables that these keep: across or through."""
+    return [(at.X if at.branches[k].kept == ACROSS else at.Y)[k] for k in _storing(at)]
+
+
+def _enter_ports(
+    component: Component,
+    at: At,
+    laws: Laws,
+    charges: Mapping[int, Scalar],
+    zeros: Sequence[Scalar],
+) -> None:
+    """Enter the law of every port: a static one, or that of a store with its charge."""
     for k, branch in enumerate(at.branches):
-        zero = zeros[k] + pushed if _mechanical(component, k) else zeros[k]
         if branch.kept == STATIC:
-            laws.statics.append(Static(component, zero, branch.name))
+            laws.statics.append(Static(component, zeros[k], branch.name))
             continue
         kept, other = (at.X, at.Y) if branch.kept == ACROSS else (at.Y, at.X)
-        charge = calculus.derivative(work, key_of(kept[k])) if charges is None else charges[k]
-        if not isinstance(charge, Node) and charge == 0:
+        if not isinstance(charges[k], Node) and charges[k] == 0:
             raise ModelError("", "stores nothing: its value is zero; leave it out")
         found = laws.spatial if branch.port.spatial else laws.stores
-        found.append(StoreLaw(branch.name, key_of(kept[k]), key_of(other[k]), charge, zero))
-        quadratic = quadratic and _proportional(charge, kept_keys, laws)
-        stored = stored + kept[k] * charge
-    rates = list(component.rates(at))
-    for state, rate in zip(component.states(), rates, strict=True):
+        found.append(StoreLaw(branch.name, key_of(kept[k]), key_of(other[k]), charges[k], zeros[k]))
+
+
+def _enter_states(component: Component, at: At, laws: Laws) -> None:
+    """Enter the states that a component has of its own, and the displacement it integrates."""
+    for state, rate in zip(component.states(), component.rates(at), strict=True):
         about = f"{state.about} of {component.name}"
         quantity = Quantity(f"{state.label}_{component.name}", state.unit, about)
         laws.own.append(Own(key_of(at.states[state.name]), quantity, rate))
@@ -132,11 +163,6 @@ def _evaluate(component: Component, at: At, laws: Laws) -> None:
         letter, unit, about = across.integral
         quantity = Quantity(f"{letter}_{component.name}", unit, f"{about} of {component.name}")
         laws.own.append(Own(key_of(at.x), quantity, at.X[-1]))
-    # if charges are linear in the kept variables, energy and co-energy are equal and the latter is shorter;
-    # otherwise the energy is the Legendre transform
-    energy = 0 if component.name in laws.unknown else work if quadratic else stored - work
-    laws.energy[component.name] = own_energy + energy
-    laws.heat[component.name] = component.dissipation(at)
 
 
 def _proportional(charge: Scalar, kept: set[Symbol], laws: Laws) -> bool:
