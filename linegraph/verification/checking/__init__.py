@@ -1,15 +1,11 @@
 """`linegraph check`: whether the equations derived for a model hold.
 
 At random admissible states the equations of motion that would be emitted are compared with Newton's and
-Euler's
-equations of every body (`golden`), which are computed independently. The same derivation over floats and
-the
-paper's matrices are compared with these, too. With loops, so are the number of degrees of freedom,
-accelerations and
-multipliers. Along the motion the rate of energy must equal the power of all applied forces, the sum of
-through
-times across must vanish in each subspace, and every component of a network must store or turn into heat the
-power that it takes in.
+Euler's equations of every body (`golden`), which are computed independently. The same derivation over
+floats and the paper's matrices are compared with these, too. With loops, so are the number of degrees of
+freedom, accelerations and multipliers. Along the motion the rate of energy must equal the power of all
+applied forces, the sum of through times across must vanish in each subspace, and every component of a
+network must store or turn into heat the power that it takes in.
 
 Each number is compared on the scale of the terms that it is the sum of, as in golden vectors.
 """

@@ -3,10 +3,9 @@
     power taken in at all edges = d/dt stored energy + heat
 
 The rate of stored energy is not taken from a formula of the derivation. The whole state, inputs and time
-take
-a complex step along the motion, and the stored energy is evaluated there. Power that changes a store from
-outside is therefore included: a capacitance that depends on a joint's position exchanges energy with the
-mechanism, and no edge of the component carries it.
+take a complex step along the motion, and the stored energy is evaluated there. Power that changes a store
+from outside is therefore included: a capacitance that depends on a joint's position exchanges energy with
+the mechanism, and no edge of the component carries it.
 """
 
 from __future__ import annotations

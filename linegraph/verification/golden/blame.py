@@ -44,8 +44,7 @@ def _owner(derivation: Derived, function: str, numeric: Numeric | None) -> tuple
     """Find the component of a network whose law is undefined, and further candidates.
 
     Candidates are the components whose own expressions use the function that has no value. Of several,
-    those
-    remain whose expressions have no value for the given inputs, time and parameters.
+    those remain whose expressions have no value for the given inputs, time and parameters.
     """
     candidates = [c for c in derivation.system.components if function in _used(c.values())]
     if len(candidates) > 1 and numeric is not None:

@@ -112,8 +112,7 @@ class Bodies:
         """For each velocity an upper estimate of inertia: ``Σ m r² |ω|²``.
 
         r is the distance of the body's reference point from the origin of the link that the velocity moves.
-        The
-        sum is the inertia that the velocity would have if no mass lay on the axis.
+        The sum is the inertia that the velocity would have if no mass lay on the axis.
         """
         np, found = self.walk.np, self.walk.np.zeros(len(self.walk.v))
         for body in self.heavy:
@@ -202,8 +201,7 @@ class Bodies:
         """Effect of the tolerance of an algebraic loop's unknowns on the forces F of the network's states.
 
         The unknowns are as exact as the terms of the loop's equations, ``K dx = dr``. A small current
-        computed from
-        the difference of two voltages is less exact than its own digits.
+        computed from the difference of two voltages is less exact than its own digits.
         """
         np, number = self.walk.np, self.walk.number
         exchange = self.walk.numeric.exchange(self.walk.q, self.walk.v)
@@ -222,8 +220,7 @@ class Bodies:
         """Raise sizes of forces along v so that none is far below its largest neighbour at unit inertia.
 
         A force in newtons and a torque in newton metres, of a planet and of a ship, have no common size.
-        But
-        ``|M_ij| <= sqrt(M_ii M_jj)``, so that fraction of one may be rounding in the other.
+        But ``|M_ij| <= sqrt(M_ii M_jj)``, so that fraction of one may be rounding in the other.
         """
         np = self.walk.np
         inertia = np.maximum(np.diag(self.mass_matrix[1]), self._aside)

@@ -5,8 +5,7 @@ A cut through a branch frees all bodies beyond it. By Newton and Euler the joint
     Σ (wrench for their motion, less weight) - Σ (wrenches of elements, loads and chords on them)
 
 A chord exerts its multipliers along its reaction directions. These are the derivatives of its equations
-with
-respect to the position of its head, by virtual work. Bodies have their own masses; accelerations are
+with respect to the position of its head, by virtual work. Bodies have their own masses; accelerations are
 derivatives of positions (`walk`). Only the laws of elements and the directions of joint efforts are shared
 with the emitted program.
 """
@@ -220,8 +219,7 @@ class Cuts:
         """For each row of a chord the force and torque on its head that do no work on any motion it allows.
 
         They are the derivatives of the row as its head moves along and turns about the axes of ground. A
-        row that
-        constrains velocities only is its own direction.
+        row that constrains velocities only is its own direction.
         """
         np = self.walk.np
         jets, resolve = Jets(self.walk.numeric.algebra), self.walk.numeric.resolve

@@ -1,13 +1,11 @@
 """Derivatives of the equations of motion, each column by one complex step (`steps`).
 
-Steps go along q̇ = N d for changes of position d, and along v, u or a parameter. With the residual
-r = M v̇ + h - Q = 0,
+Steps go along q̇ = N d for changes of position d, and along v, u or a parameter. The residual is zero:
 
-    ∂v̇/∂x = -M⁻¹ ∂r/∂x
+    r = M v̇ + h - Q = 0        ∂v̇/∂x = -M⁻¹ ∂r/∂x
 
 With constraints, v̇ is solved for in the independent coordinates, entirely at the shifted state. A change
-of
-position d is transported by the motion itself: d' = dv + [bracket] d, with the Lie bracket of the two
+of position d is transported by the motion itself: d' = dv + [bracket] d, with the Lie bracket of the two
 motions.
 """
 
@@ -40,8 +38,7 @@ class _Slopes(NamedTuple):
     """Derivatives of M (n x n x k), h and Q (n x k) with respect to k variables.
 
     `terms` are the sizes of the terms of ∂h - ∂Q. A diode's own slope and its slope through the voltage
-    that follows
-    may cancel.
+    that follows may cancel.
     """
 
     mass: Array
@@ -55,8 +52,7 @@ class Derivatives:
     """Derivatives of the equations of motion at a state.
 
     Each result is an array and the size of its entries. Changes of position are expressed in velocities, on
-    the
-    tangent space: δq = N d.
+    the tangent space: δq = N d.
 
     Attributes:
         point: the state and the reference quantities at it.
@@ -203,11 +199,9 @@ class Derivatives:
         """Sizes of derivatives: for each variable its largest effect, each row in its own measure.
 
         A zero derivative may be the remainder of large terms that cancel. Its size is therefore at least a
-        fraction
-        of the largest effect of mechanics, and of the effect of one unit, because states and shifts are of
-        that
-        size. Parameters are not, and inputs act beside forces of any size; there `unit` is given for each,
-        or 0.
+        fraction of the largest effect of mechanics, and of the effect of one unit, because states and
+        shifts are of that size. Parameters are not, and inputs act beside forces of any size; there `unit`
+        is given for each, or 0.
         """
         np = self.point.walk.np
         measure = np.where(sizes > 0, sizes, np.inf)[:, None]

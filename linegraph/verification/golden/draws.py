@@ -104,8 +104,7 @@ class Drawing:
 
         Returns:
             The states. Where states had to be nearer zero than 1, further ones are appended: one loud state
-            for
-            each reach that was too far, so that diodes conduct at some states.
+            for each reach that was too far, so that diodes conduct at some states.
 
         Raises:
             ModelError: a law is defined at no state that was tried, M is singular at all of them, or the
@@ -256,8 +255,7 @@ class Drawing:
         """Draw values of parameters that differ from the model's own; None if none may differ.
 
         Parameters that would open loops of redundant constraints keep their values; those that are zero
-        differ only
-        with `zeros`.
+        differ only with `zeros`.
         """
         model, found = self.derivation.system, {}
         for parameter in model.parameters.values():

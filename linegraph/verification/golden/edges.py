@@ -72,8 +72,7 @@ class Edges:
         """Across variables of all edges: of mechanics 6 each, then those of networks.
 
         An edge of mechanics has its head's velocity less its tail's, then the same of angular velocities,
-        in ground
-        axes (m/s, rad/s).
+        in ground axes (m/s, rad/s).
         """
         np = self.cuts.walk.np
         found, sizes = [], []
@@ -167,8 +166,7 @@ class Edges:
         """Through times across of all edges (W), of mechanics 3 each: translation, rotation and lever.
 
         The lever is the moment of an edge's force about its tail, times the tail's angular velocity. One
-        power for
-        each edge of a network follows.
+        power for each edge of a network follows.
         """
         np, found, sizes = self.cuts.walk.np, [], []
         for name, (force, torque, tail) in self._exerted.items():
@@ -228,8 +226,7 @@ class Edges:
         """For each edge its wrench on the head, its torque, and whether its tail feels the lever.
 
         Inertia edges and loads end at ground, whose velocity is zero. By the vertex postulate a rigid arm
-        carries
-        the wrenches of all other edges at its terminal.
+        carries the wrenches of all other edges at its terminal.
         """
         np = self.cuts.walk.np
         found: dict[str, tuple[Pull, Array, bool]] = {}

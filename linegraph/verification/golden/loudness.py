@@ -26,8 +26,7 @@ def even(points: Sequence[Point], calm: Any) -> bool:
     """Whether forces in networks are of about the same size at all states, and not far above those near zero.
 
     The second condition is needed because an exponential law may be huge at all states alike, and then
-    hides
-    everything that is added to it.
+    hides everything that is added to it.
 
     Args:
         points: the states to judge.

@@ -1,17 +1,16 @@
 """Y and rest of ``tau = Y pi + rest``, and the model's own parameters pi, by Newton and Euler.
 
 A column of a link's moments is the generalised force of a body with 1 for one moment, about the origin of
-the
-body that the link's joint carries, and 0 for all others:
+the body that the link's joint carries, and 0 for all others:
 
     f = m a + α x b + ω x (ω x b)      n = J α + ω x J ω + b x a      column = Jᵀ (f, n)
 
 with a less gravity and α at the given accelerations [Atkeson 1986]. A column of a joint is the effort along
 its rate, the derivative of its coordinate. The values pi are masses, first moments and inertias of a link's
 bodies as given in the model, moved to that origin and summed, and the constants of its dampers and
-frictions.
-rest is tau of all bodies and elements less Y pi, so no term is missing and none is counted twice. The
-definition of pi also fixes which joints have parameters and to which of them a following joint adds.
+frictions. rest is tau of all bodies and elements less Y pi, so no term is missing and none is counted
+twice. The definition of pi also fixes which joints have parameters and to which of them a following joint
+adds.
 """
 
 from __future__ import annotations
@@ -187,8 +186,7 @@ class Parameters:
         """By joint, the constant inertia of network rotors that turn with it, from their stored energy.
 
         With one edge in mechanics moving at w and all else at rest, ``E = J w² / 2``; terms linear in w
-        cancel in
-        ``E(1) + E(-1) - 2 E(0)``.
+        cancel in ``E(1) + E(-1) - 2 E(0)``.
         """
         walk, model = self.walk, self.walk.numeric.model
         known = {axis.joint: axis for axis in self._axes}

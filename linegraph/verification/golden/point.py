@@ -249,8 +249,7 @@ class Point:
         """Solve ``M x = force + Jᵀ y``, ``J x = right``; y of least norm where it is not unique.
 
         The system is scaled first (`scale`), solved by a generalised inverse and refined once. Sizes are
-        first-order
-        bounds of the effect of rounding in M, J and the right-hand side.
+        first-order bounds of the effect of rounding in M, J and the right-hand side.
         """
         np, n = self.walk.np, len(self.v)
         (M, of_M), (J, of_J) = masses, rows
@@ -296,8 +295,7 @@ class Point:
         """Scales of x and y in `_saddle` that make the rank independent of units.
 
         Velocities are scaled to unit inertia. All multipliers get one common scale, from the largest entry
-        of J, so
-        that a least norm remains a least norm.
+        of J, so that a least norm remains a least norm.
 
         Args:
             of_M: n x n, sizes of M.

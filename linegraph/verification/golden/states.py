@@ -2,8 +2,7 @@
 
 The route is Newton's and Euler's equations of every body (`bodies`), in floats, from derivatives of its
 position. NumPy solves for accelerations. States are admissible: quaternions have length 1, loops are
-closed,
-velocities obey the constraints, and every law is defined.
+closed, velocities obey the constraints, and every law is defined.
 """
 
 from __future__ import annotations
@@ -56,8 +55,7 @@ def vectors(
 
     Returns:
         States with arguments q (nq), v (n), u (nu), a (n) in SI units, and the results there, each entry
-        with the
-        scale that its error is to be judged on.
+        with the scale that its error is to be judged on.
 
     Raises:
         ModelError: no function has an independent route, or no admissible state was found.

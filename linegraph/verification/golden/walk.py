@@ -32,8 +32,7 @@ Valued = tuple[Any, Any]
 """An array, and an array of the same shape with the sizes of its entries.
 
 The size is the magnitude of the terms that an entry is summed from. Rounding errors are proportional to it,
-also
-where the terms cancel and the entry is zero.
+also where the terms cancel and the entry is zero.
 """
 
 
@@ -44,8 +43,7 @@ class Moved(NamedTuple):
         rotation: 3 x 3, from the frame's axes to ground axes.
         origin: 3, position of its origin (m).
         angular, linear: 3 x (n + 1), angular velocity and velocity of its origin for each unit velocity,
-            then
-            for those of the state.
+            then for those of the state.
         spin, pull: 3, angular acceleration and acceleration of its origin at v̇ = 0.
     """
 
