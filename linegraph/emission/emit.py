@@ -53,25 +53,26 @@ def emit(
 
     Args:
         model: the builder or the system.
-        out: the folder, made if need be.
-        name: prefix of functions and files; default the model's name, cleaned to an identifier.
-        languages: some of `codegen.LANGUAGES`; default all, for Arduino C alone.
+        out: the folder, created if missing.
+        name: prefix of functions and files; default the model's name, turned into an identifier.
+        languages: some of `codegen.LANGUAGES`; default all, or C alone with the option ``arduino``.
         folded: write the parameters' values into the code instead of keeping them symbolic.
         functions: further functions to write, of `programs.register.ON_REQUEST`.
-        only: write nothing but these of `programs.register.PROGRAMS` and what they call.
+        only: write only these of `programs.register.PROGRAMS` and the functions they call.
         frames: bodies, or frames of bodies as ``body.frame``, whose kinematics are to be written.
-        tests: write golden vectors, too: programs that check what is written against another route.
+        tests: also write golden vectors: programs that compare the written functions with independent
+            results.
         progress: called with a short text before each stage.
-        warn: called with what a reader must know of the files; default a Python warning.
-        **options: choices for C: ``trig`` ("libm" or "inline"), ``batch`` (functions of many states),
+        warn: called with warnings about the files; default a Python warning.
+        **options: options for C: ``trig`` ("libm" or "inline"), ``batch`` (functions of many states),
             ``real`` ("double" or "float"), ``prefix`` (of functions, types and macros), ``cmake``,
-            ``arduino`` and ``report``, as `codegen.Options` says them.
+            ``arduino`` and ``report``; see `codegen.Options`.
 
     Returns:
-        The files written. Nothing is written unless everything could be rendered.
+        The paths of the files written. Nothing is written unless everything could be rendered.
 
     Raises:
-        LinegraphError: the model cannot be derived, a name cannot be emitted, a file not written.
+        LinegraphError: the model cannot be derived, a name cannot be emitted, or a file cannot be written.
 
     Example:
         >>> import tempfile
@@ -112,7 +113,27 @@ def render(
     warn: Callable[[str], None] | None = None,
     **options: Any,
 ) -> dict[str, str]:
-    """What `emit` writes, as {file name: text}."""
+    """Render the files that `emit` writes.
+
+    Args:
+        model: the builder or the system.
+        name: prefix of functions and files; default the model's name, turned into an identifier.
+        languages: some of `codegen.LANGUAGES`; default all, or C alone with the option ``arduino``.
+        folded: write the parameters' values into the code.
+        functions: further functions to write.
+        only: write only these functions and those they call.
+        frames: bodies, or frames of bodies, whose kinematics are to be written.
+        tests: also render golden vectors.
+        progress: called with a short text before each stage.
+        warn: called with warnings about the files; default a Python warning.
+        **options: options for C, as for `emit`.
+
+    Returns:
+        The text of each file by name, or by path relative to the folder.
+
+    Raises:
+        LinegraphError: the model cannot be derived, or a name cannot be emitted.
+    """
     import codegen
 
     tell = progress or (lambda text: None)
@@ -159,12 +180,12 @@ def _python_warning(text: str) -> None:
 
 
 def _several(names: Iterable[str]) -> tuple[str, ...]:
-    """Names; one alone is one."""
+    """Return names as a tuple; a single string is one name."""
     return (names,) if isinstance(names, str) else tuple(names)
 
 
 def _vectors(derivation: Derived, module: Module, frames: Sequence[NamedFrame]) -> Vectors:
-    """Golden vectors of a module."""
+    """Golden vectors of a module, with errors placed in the model's file."""
     from linegraph.verification import golden
 
     try:
@@ -182,7 +203,18 @@ def module_for(
     only: Iterable[str] = (),
     frames: Iterable[str] = (),
 ) -> Module:
-    """The program of every function of a model: what operation counts are taken from.
+    """The program of each function of a model, from which operations are counted.
+
+    Args:
+        model: the builder or the system.
+        name: prefix of functions.
+        folded: write the parameters' values into the programs instead of keeping them symbolic.
+        functions: further functions, of `programs.register.ON_REQUEST`.
+        only: only these of `programs.register.PROGRAMS` and the functions they call.
+        frames: bodies, or frames of bodies as ``body.frame``, whose kinematics are included.
+
+    Raises:
+        ModelError: the model cannot be derived, or there is no such function or frame.
 
     Example:
         >>> from linegraph import Model
@@ -200,7 +232,7 @@ def module_for(
 
 
 def _require_known(wanted: Iterable[str], only: Iterable[str]) -> None:
-    """Refuse functions that are not promised."""
+    """Refuse names of functions that do not exist."""
     for known, chosen in ((ON_REQUEST, wanted), (tuple(PROGRAMS), only)):
         for function in chosen:
             if function not in known:
@@ -216,7 +248,7 @@ def _module(
     functions: Sequence[str],
     only: Sequence[str],
 ) -> Module:
-    """The programs of a derivation, errors with their place in the model's file."""
+    """The programs of a derivation, with errors placed in the model's file."""
     system = derivation.system
     about = [f"Equations of motion of {system.name}, derived by linegraph {__version__}."]
     about += [text for text in (system.about,) if text]
