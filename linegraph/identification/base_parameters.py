@@ -5,9 +5,9 @@ some are linear combinations of others. With the independent parameters pi_b and
 
     beta = pi_b + K pi_d        Y pi = Y_b beta
 
-K depends on the geometry alone [Gautier 1990]. It is exact: `relations` finds it with symbols for what is
-symbolic in the model. Relations that exist only because motions are coupled or prescribed are found
-numerically, as in [Gautier 1991].
+K depends on the geometry alone [Gautier and Khalil 1990]. It is exact: `relations` finds it with symbols
+for what is symbolic in the model. Relations that exist only because motions are coupled or prescribed are
+found numerically, as in [Gautier 1991].
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The regressor: generalised forces for a unit of each of a link's ten moments [Atkeson 1986].
+"""The regressor: generalised forces for a unit of each of a link's ten moments [Atkeson et al. 1986].
 
 Inverse dynamics is linear in the moments m, b, J of a link about a point fixed in it. By orthogonality the
 share of the link's wrench (f, n) along a velocity is its product with the motion that the velocity gives

@@ -45,7 +45,8 @@ PAIRS = tuple(combinations_with_replacement(range(3), 2))
 PREFERRED = ("m", "mz", "my", "mx", "Iyy", "Ixx", "Izz", "Iyz", "Ixz", "Ixy")
 """Order in which a link's parameters are eliminated.
 
-For a joint about z these are m, mz and Iyy [Khalil 2002].
+For a joint about z, m, mz and Iyy can go, as in [Khalil and Dombre 2002]; the others follow for special
+geometry.
 """
 
 TEN = range(10)

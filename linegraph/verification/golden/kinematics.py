@@ -2,7 +2,7 @@
 
 A frame is a place on a body; its velocity and acceleration are derivatives of the place along the motion.
 Momentum is the sum over bodies, and its rate is the wrench that they need without gravity. Nothing is
-propagated from joint to joint. Centroidal quantities: [Orin 2013].
+propagated from joint to joint. Centroidal quantities: [Orin et al. 2013].
 """
 
 from __future__ import annotations
@@ -171,9 +171,9 @@ class KinematicReference:
 
     @property
     def momentum_matrix(self) -> Valued:
-        """Centroidal momentum matrix A_G, 6 x n, with ``A_G v`` the momentum.
+        """Centroidal momentum matrix A_G, 6 x n, linear rows first; ``A_G v`` is the momentum.
 
-        Linear rows first [Orin 2013].
+        See [Orin et al. 2013].
         """
         found, size = self._momenta
         return found[:, :-1], size[:, :-1]

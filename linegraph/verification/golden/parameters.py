@@ -5,12 +5,12 @@ the body that the link's joint carries, and 0 for all others:
 
     f = m a + α x b + ω x (ω x b)      n = J α + ω x J ω + b x a      column = Jᵀ (f, n)
 
-with a less gravity and α at the given accelerations [Atkeson 1986]. A column of a joint is the effort along
-its rate, the derivative of its coordinate. The values pi are masses, first moments and inertias of a link's
-bodies as given in the model, moved to that origin and summed, and the constants of its dampers and
-frictions. rest is tau of all bodies and elements less Y pi, so no term is missing and none is counted
-twice. The definition of pi also fixes which joints have parameters and to which of them a following joint
-adds.
+with a less gravity and α at the given accelerations [Atkeson et al. 1986]. A column of a joint is the
+effort along its rate, the derivative of its coordinate. The values pi are masses, first moments and
+inertias of a link's bodies as given in the model, moved to that origin and summed, and the constants of its
+dampers and frictions. rest is tau of all bodies and elements less Y pi, so no term is missing and none is
+counted twice. The definition of pi also fixes which joints have parameters and to which of them a following
+joint adds.
 """
 
 from __future__ import annotations

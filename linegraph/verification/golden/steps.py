@@ -3,7 +3,7 @@
     f(x + i h d) = f(x) + i h f'(x) d + O(h^2)
 
 With h far below rounding, Im f / h is the derivative along d to the last digit, because nothing is
-subtracted [Martins 2003]. A difference quotient would lose half of the digits.
+subtracted [Martins et al. 2003]. A difference quotient would lose half of the digits.
 """
 
 from __future__ import annotations
