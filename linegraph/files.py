@@ -173,6 +173,7 @@ def _stage(folder: Path, content: str | bytes) -> str:
     try:
         with os.fdopen(handle, "wb") as stream:
             stream.write(_bytes(content))
+        # mkstemp makes files private to the owner; the umask can be read only by setting it.
         mask = os.umask(0)
         os.umask(mask)
         os.chmod(temporary, 0o666 & ~mask)

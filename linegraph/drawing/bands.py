@@ -175,6 +175,8 @@ class Bands:
                 for k in self.rows[row]
                 for x in self.above[k]
             )
+            # Links cross if their upper ends are in the opposite order of their lower ends: count
+            # inversions.
             passed: list[int] = []
             for _, far in pairs:
                 count += len(passed) - bisect_right(passed, far)
@@ -201,6 +203,7 @@ class Bands:
             upward = sweep % 2 == 0
             rows = self.rows if upward else self.rows[::-1]
             for row in rows:
+                # In the first sweeps one side has no useful positions yet and is ignored.
                 self._settle(row, sweep < 2, upward)
             if upward:
                 now = [cell.x for cell in self.cells]

@@ -109,7 +109,7 @@ class Labels:
         self.taken.append(label.box)
         box = label.box
         ground: list[Item] = []
-        if any(_holds(box, p) for p in self.lines):  # a line ends where a name stands on it
+        if any(_holds(box, p) for p in self.lines):  # white ground interrupts the line
             wide, high = tenth(box.right - box.left), tenth(box.bottom - box.top)
             ground = [Region(tenth(box.left), tenth(box.top), wide, high, 2, None, PAPER)]
         if best[2] < LEADING:

@@ -19,6 +19,7 @@ def hull_of(points: Sequence[Point]) -> list[Point]:
     if len(ordered) < 3:
         return ordered
 
+    # Andrew's monotone chain: the upper and the lower half of the hull from points sorted by x.
     def half(row: Iterable[Point]) -> list[Point]:
         kept: list[Point] = []
         for p in row:

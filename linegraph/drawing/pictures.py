@@ -250,7 +250,7 @@ def rows(blocks: Sequence[Block], widest: int) -> tuple[list[Item], int, int]:
     top = bottom = left = edge = y = right = tallest = 0
     for block, wide, high in blocks:
         if items and y + high <= top + tallest * 5 // 4 and left + wide <= widest:
-            pass  # under the last one
+            pass  # below the last one
         elif items and edge + wide <= widest:
             left, y = edge, top
         elif items:

@@ -73,7 +73,7 @@ class Stand:
         ]
         self.scale = min(spans, default=1.0)
         if min((right - left) * self.scale / WIDE, (high - low) * self.scale / HIGH) < 0.5:
-            self.scale *= LARGER  # a slender one has room to be longer
+            self.scale *= LARGER  # a slender mechanism leaves space
         names = [place.joint.name for place in self.poses.joints] + [*self.poses.origins]
         widest = max(width(short(name, LONGEST_LABEL), NORMAL, bold=True) for name in names)
         beside = min(MOST_BORDER, max(BORDER, widest + 30))

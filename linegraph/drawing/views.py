@@ -107,6 +107,7 @@ def _hidden(view: View, points: Sequence[Vector], found: Poses) -> int:
     for i, p in enumerate(flat):
         for j in range(i):
             apart = max(abs(p[0] - flat[j][0]), abs(p[1] - flat[j][1]))
+            # The margin makes the choice independent of rounding where distances equal the limit.
             if apart < limit * (1 - 1e-9) and _length(subtract(points[i], points[j])) > limit:
                 count += 1
     for place in found.joints:

@@ -138,6 +138,8 @@ def render(
 
     tell = progress or (lambda text: None)
     choices = codegen.options_of(options)
+    # An option that differs from its default must concern a language that is written, or it would be
+    # ignored silently.
     asked = {name for name, x in options.items() if x != getattr(codegen.Options(), name)}
     heeding = [x for x in codegen.LANGUAGES if asked & codegen.known(x).options]
     default = heeding if choices.arduino else codegen.LANGUAGES

@@ -166,7 +166,7 @@ def _screws(
             linear = into(add(u, cross(s, arm.at)))
             here[k] = (ZERO if arm.level else into(s), linear)
         motion = arm.motion
-        # where the motion is prescribed there are no velocities
+        # A joint in prescribed motion has axes but no velocities, so the lengths may differ.
         for freedom, s, u in zip(link.velocities, motion.angular, motion.linear, strict=False):
             own = (vector.scale(freedom.ratio, s), vector.scale(freedom.ratio, u))
             before = here.get(freedom.index, (ZERO, ZERO))
@@ -183,11 +183,13 @@ class _Table:
         a, b, c = spin.angular
         xx, yy, zz, xy, xz, yz = x * x, y * y, z * z, x * y, x * z, y * z
         self._linear = spin.linear
+        # U = [ε x] + [ω x][ω x], so that U r is the acceleration of a point r relative to the origin.
         self._field = (
             (-(yy + zz), xy - c, xz + b),
             (xy + c, -(xx + zz), yz - a),
             (xz - b, yz + a, -(xx + yy)),
         )
+        # J ε + ω x J ω for a unit of each of xx, xy, yy, xz, yz, zz: the columns of N(ω, ε).
         self._torques: tuple[Vector, ...] = (
             (a, xz, -xy),
             (b - xz, a + yz, xx - yy),

@@ -199,6 +199,7 @@ def _crossed(
     rows: list[Row] = []
     if free:
         own = [[r * r * x for x in _kinetic(t, t)] for t, r in zip(twists, ratios, strict=True)]
+        # A rotor's inertia appears in the kinetic energy of the joint's own rate only.
         rows.append([x for part in own for x in part] + [1])
 
     def shifted(row: Row) -> Row:

@@ -127,6 +127,7 @@ def _samples(derivation: Derived) -> list[Numeric]:
     Raises:
         ModelError: it is not defined at any of them.
     """
+    # Fixed seed: which parameters are independent must not depend on chance.
     draw = random.Random(0)
     parameters = [p for p in derivation.system.parameters.values() if not p.derived]
     found: list[Numeric] = []
@@ -330,9 +331,11 @@ def _pivots(table: Array) -> list[int]:
 
     scales = np.linalg.norm(table, axis=0)
     scales[scales == 0] = 1
+    # Columns have different units; scaled to unit length, one threshold on singular values fits all.
     _, values, right = np.linalg.svd(table / scales, full_matrices=False)
     rows = right[values < SINGULAR * values[0]]
     pivots: list[int] = []
+    # Pivots that are not weak come first, so that factors stay moderate; a second pass takes the others.
     for least in (WEAK, 0.0):
         for k in range(rows.shape[1]):
             if not len(rows) or k in pivots:

@@ -66,7 +66,7 @@ class Forms:
     """The equations of motion of a report, in the sections that follow the principle."""
 
     def __init__(self, subject: Subject, tell: Callable[[str], None]) -> None:
-        """Count operations; closed forms are computed on demand, and `tell` is called with each stage."""
+        """Count operations; closed forms are computed on demand, and `tell` is called at each stage."""
         self._subject = subject
         self._tell = tell
         self._functions = Functions(subject.derivation, subject.folded)

@@ -70,6 +70,7 @@ def parse_document(data: bytes, source: str) -> ModelText:
     text = _decoded(data, source)
     as_json = source.lower().endswith(".json") or text.lstrip().startswith("{")
     try:
+        # Scanned first: its limits protect the parser, which has none.
         places = (json_lines if as_json else toml_lines).locate(text)
     except Limit as limit:
         raise SourceError(source, limit.line, "", limit.problem) from None

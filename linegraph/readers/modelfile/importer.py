@@ -95,7 +95,7 @@ def _impossible(model: Model) -> list[str]:
                 place = _place(model, f'body "{body.name}"')
                 found.append(f'{place}: body "{body.name}": no body has this inertia: {problem}')
     except (ModelError, ArithmeticError):
-        return []  # told with its place when the model is derived
+        return []  # reported with its place when the model is derived
     return found
 
 
@@ -110,7 +110,7 @@ def _loose_ends(model: Model) -> list[str]:
         branches = edges_of(model.components)
         graphs = projections(branches)
     except ModelError:
-        return []  # said with its place when the model is derived
+        return []  # reported with its place when the model is derived
     owners = {branch.name: branch.component for branch in branches}
     found = []
     for graph in graphs:

@@ -15,6 +15,7 @@ from linegraph.readers.modelfile.places import Lines, NotUnderstood
 if TYPE_CHECKING:
     from linegraph.readers.modelfile.report import Path
 
+# Possessive quantifiers, so that matching takes linear time for hostile files as well.
 _GAP = re.compile(r"[ \t\r\n]*+")
 _STRING = re.compile(r'"(?:[^"\\\n]++|\\.)*+"')
 _SCALAR = re.compile(r"[A-Za-z0-9.+-]++")

@@ -89,6 +89,7 @@ class Real:
         Returns:
             The number, or the text of the expression, or `WRONG` after its errors are noted.
         """
+        # bool is a subclass of int, but true is not a number of a model.
         if isinstance(value, bool) or not isinstance(value, (int, float, str)):
             spot.error(f"a number or an expression in quotes is wanted, not {said(value)}")
             return WRONG

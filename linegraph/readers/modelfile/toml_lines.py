@@ -18,6 +18,7 @@ from linegraph.readers.modelfile.places import Lines, NotUnderstood
 if TYPE_CHECKING:
     from linegraph.readers.modelfile.report import Path
 
+# Possessive quantifiers, so that matching takes linear time for hostile files as well.
 _BLANK = re.compile(r"[ \t]*+")
 _GAP = re.compile(r"(?:[ \t\n]++|#[^\n]*+)*+")
 _LINE_END = re.compile(r"[ \t]*+(?:#[^\n]*+)?(?:\n|\Z)")

@@ -187,6 +187,7 @@ def moments_of(inertial: Inertial) -> tuple[float, Vector, Inertia]:
     """
     m, (x, y, z) = inertial.mass, inertial.center
     xx, xy, xz, yy, yz, zz = inertial.tensor
+    # Parallel axis theorem; off-diagonal entries have the sign of the inertia matrix, xy = -∫ x y dm.
     about = (
         xx + m * (y * y + z * z),
         xy - m * x * y,

@@ -171,7 +171,7 @@ def _parsed(data: bytes, report: UrdfReport) -> Any:
     Some tools write prefixes without declaring them. They are declared in a second pass instead of using a
     recovering parser, which would ignore other errors of the file, too.
     """
-    from lxml import etree  # only here: whoever reads no URDF does not wait for it
+    from lxml import etree  # imported here: other commands need not wait for it
 
     undefined = etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE
     prefixes: dict[str, int] = {}
@@ -200,6 +200,8 @@ def _parsed(data: bytes, report: UrdfReport) -> Any:
 def _parser() -> Any:
     from lxml import etree
 
+    # URDF needs no entities, DTDs or network; each of them would let a file read others or grow without
+    # bound.
     return etree.XMLParser(
         resolve_entities=False,
         no_network=True,

@@ -149,7 +149,7 @@ def _mimic(part: XmlPart, kind: str) -> Mimic | None:
     if mimic is None:
         return None
     mimic.check_attributes(("joint", "multiplier", "offset"))
-    if kind == "fixed":  # some vendors fix the fingers of a hand and leave the rest as it was
+    if kind == "fixed":  # some vendors fix the fingers of a hand and keep their <mimic>
         mimic.warn("<mimic> of a fixed joint is ignored")
         return None
     if kind not in ONE_FREEDOM:

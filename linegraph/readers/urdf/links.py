@@ -80,6 +80,7 @@ def _inertial(part: XmlPart, snap: float) -> Inertial:
     center, rpy = origin_of(part)
     written = _tensor(part)
     rotation = rotation_of(snapped(from_rpy(*rpy), snap))
+    # R I Rᵀ: the file gives the inertia in the axes of <origin>, the model needs it in those of the link.
     return Inertial(mass, center, rotation.congruence(written))
 
 

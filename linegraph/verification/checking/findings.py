@@ -1,4 +1,4 @@
-"""Results of a check: comparisons, each on the scale of its terms, and what could not be judged."""
+"""Results of a check: comparisons on the scale of their terms, and quantities that were not judged."""
 
 from __future__ import annotations
 

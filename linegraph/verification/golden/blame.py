@@ -1,4 +1,4 @@
-"""Name the component whose law is undefined at every state tried, and say how to bound the states."""
+"""Name the component whose law is undefined at every state tried, and advise how to bound the states."""
 
 from __future__ import annotations
 

@@ -65,7 +65,7 @@ class Constraints:
     def position(self) -> Valued:
         """φ (m or rad) of the constraints on position.
 
-        The size of an entry is the largest displacement that unit velocities give either end alone.
+        The size of an entry is the displacement that unit velocities would give one of its ends alone.
         """
         found = [row.position for row in self._holonomic()]
         x, _, _ = self.walk.parts(found)
@@ -95,6 +95,7 @@ class Constraints:
             return known.jacobian()[k], known.rates(self.walk.v)[k], known.bias()[k]
         row = self._rows[name][equation.place]
         if equation.holonomic:
+            # φ̈ = J v̇ + φ̈ at v̇ = 0, and φ̈ must vanish: γ is the latter with opposite sign.
             _, dx, ddx = self.walk.parts([row.position])
             return dx[0, :-1], dx[0, -1], -ddx[0, -1]
         (closure,) = (c for c in self.walk.tree.closures if c.component.name == name)
@@ -113,6 +114,8 @@ class Constraints:
         b, db, _ = self.walk.parts([row.rate])
         line = head.origin - tail.origin
         arms = np.broadcast_to(line[:, None], tail.angular.shape)
+        # Velocity of the head relative to the tail's axes, which turn: the last term is the velocity of the
+        # point fixed in the tail that is at the head's place.
         u = head.linear - tail.linear - np.cross(tail.angular, arms, axis=0)
         w = head.angular - tail.angular
         along = f[:, 0] @ u + m[:, 0] @ w

@@ -118,6 +118,8 @@ class Cuts:
         moved = heavy.moved
         linear, angular = moved.linear[:, :-1], moved.angular[:, :-1]
         gravity = self.bodies.gravity
+        # Weight acts at the mass centre like an acceleration -g of the whole body, so it needs no wrench of
+        # its own.
         pull = moved.pull + linear @ a - gravity
         heavy = heavy._replace(moved=moved._replace(spin=moved.spin + angular @ a))
         force, torque = self.bodies.required(heavy, pull)
@@ -147,6 +149,8 @@ class Cuts:
             length = float(np.linalg.norm(line))
             pull = _array(np, self.acting.between(element)[1])
             y = float(pull @ line) / length
+            # A positive through variable pulls the two points together, so it pulls the head towards the
+            # tail.
             found = self._pull(-y * line / length, np.zeros(3), element.between[1])
             apart = float(np.linalg.norm(head.origin) + np.linalg.norm(tail.origin))
             rate = float((head.linear - tail.linear) @ line) / length
@@ -294,6 +298,7 @@ class Cuts:
             found[name] = total if forward else total.turned()
             for element in self.model.elements:
                 if isinstance(element, Element) and element.joint == name:
+                    # The cut also carries the element in the joint, which has its own edge.
                     found[name] = found[name].with_(self.elements[element.name].turned())
         return {name: found[name] for name in self.walk.tree.ends}
 

@@ -217,6 +217,7 @@ class Derivatives:
         np, (M, of_M) = self.point.walk.np, self.point.bodies.mass_matrix
         a, of_a = self.point.motion[0]
         scale = self.point.scale(of_M, of_M[:0])[0]
+        # Scaled to unit inertia, so that units and masses of very different size do not spoil the inverse.
         inverse = np.linalg.inv(M * scale * scale[:, None]) * scale * scale[:, None]
         slopes = np.einsum("ijk,j->ik", by.mass, a) + by.bias - by.forces
         found = -inverse @ slopes

@@ -126,7 +126,10 @@ class Edges:
 
     @property
     def drives(self) -> Valued:
-        """Effort along each prescribed coordinate (N or N m): positive if it drives the prescribed motion."""
+        """Effort along each prescribed coordinate, exerted by the joint on its head (N or N m).
+
+        It is positive in the direction of the coordinate.
+        """
         np, found, sizes = self.cuts.walk.np, [], []
         for name, closure in self.cuts.walk.tree.ends.items():
             joint: Any = closure.component

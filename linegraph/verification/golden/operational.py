@@ -62,9 +62,10 @@ class Operational:
 
     @cached_property
     def _inverse(self) -> Array:
-        """M⁻¹."""
+        """M⁻¹, computed with velocities scaled to unit inertia."""
         np, (M, of_M) = self.point.walk.np, self._dynamics.mass
         scale = self.point.scale(of_M, of_M[:0])[0]
+        # Scaled to unit inertia, so that units do not decide which entries are rounding.
         return np.linalg.inv(M * scale * scale[:, None]) * scale * scale[:, None]
 
     @cached_property

@@ -142,7 +142,7 @@ class Parameters:
             b = turn @ np.array([float(resolve(x)) for x in body.first or ZERO])
             xx, xy, xz, yy, yz, zz = (float(resolve(x)) for x in body.inertia)
             own = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-            # ∫ (r² 1 - r rᵀ) with r = arm + what is about the body's own point
+            # ∫ (r² 1 - r rᵀ) dm with r = arm + r', r' from the body's own reference point.
             mixed = np.outer(arm, b)
             moved = (m * arm @ arm + 2 * arm @ b) * np.eye(3)
             moved -= m * np.outer(arm, arm) + mixed + mixed.T

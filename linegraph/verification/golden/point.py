@@ -34,7 +34,7 @@ View = TypeVar("View")
 
 
 class Kept(NamedTuple):
-    """Indices of what is independent under constraints.
+    """Indices of the independent variables under constraints.
 
     Attributes:
         coordinates: places in q of the independent coordinates s.
@@ -100,7 +100,7 @@ class Point:
 
     @property
     def q_near(self) -> list[float]:
-        """Coordinates near q as a starting guess; q itself if there are constraints on velocities only.
+        """Coordinates near q as a starting guess; q itself if some constraints are on velocities only.
 
         These leave more positions than velocities, so completing the position from a guess is not unique.
         """
@@ -256,10 +256,12 @@ class Point:
         (upper, of_upper), (lower, of_lower) = force, right
         whole, size = np.concatenate([upper, lower]), np.concatenate([of_upper, of_lower])
         scale = np.concatenate(self.scale(of_M, of_J))
+        # Multipliers act on the head of a chord: they are on the right of M x = force + Jᵀ y.
         given = np.block([[M, -J.T], [J, np.zeros((len(J), len(J)))]])
         scaled, whole, size = given * scale * scale[:, None], whole * scale, size * scale
         inverse = self._inverse(scaled, n)
         found = inverse @ whole
+        # One step of iterative refinement reduces the rounding error of the generalised inverse.
         found += inverse @ (whole - scaled @ found)
         # First-order bound on errors of the rows and the right-hand side, in undetermined directions as
         # well.

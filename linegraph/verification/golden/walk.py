@@ -98,6 +98,7 @@ def own_rates(joint: Joint, algebra: Algebra, q: tuple[Any, ...], v: tuple[Any, 
         ahead = _quaternion(_quaternion(turn, (*v[:-3], 0)), inverse)[:3] if len(v) > 3 else ()
         return (*ahead, *_quaternion(turn, (*half, 0)))
     if joint.kind == "planar":
+        # Position and angle are in tail axes, but velocities in head axes.
         c, s = algebra.cos(q[2]), algebra.sin(q[2])
         return (c * v[0] - s * v[1], s * v[0] + c * v[1], v[2])
     if joint.kind == "compound":
@@ -179,6 +180,7 @@ class Walk:
         number, jets = self.number, Jets(self.numeric.algebra)
         pairs = zip(self.q, rates[:, -1], strict=True)
         moving = [Jet(number(x), number(dx), 0.0) for x, dx in pairs]
+        # q̈ at v̇ = 0 is the rate of N(q) v with v held.
         second = coordinate_rates(self.tree, jets, moving, list(map(number, self.v)))
         return tuple(
             Jet(number(x), dx, lifted(change).dx)
