@@ -14,7 +14,7 @@ T_vw is the bilinear kinetic energy. "At every q" is the span closed under the m
 parent's span is found the same way from the root outward: its velocities are those of its own parent and
 its joint, its functions f are those of its own parent, T_φv and T_φφ. A leaf must satisfy this by itself,
 then the tree without the leaf; so for joints with velocities of their own these are all relations. [Wensing
-2017] derives undetectable transfers of inertia across joints in the same recursion, in numbers.
+et al. 2017] finds such undetectable transfers of inertia across joints recursively, too, in numbers.
 
 Joints that follow one another and have the same parent are treated together. Other followers, and joints in
 prescribed motion, may have further relations.
