@@ -27,6 +27,7 @@ def main() -> None:
 
         status = run()
         sys.stdout.flush()
+        # A command that succeeded has printed its result, which is lost if standard output is closed.
         if not written and status == 0:
             raise OSError(errno.EBADF, "it is closed")
     except KeyboardInterrupt:

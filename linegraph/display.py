@@ -46,6 +46,7 @@ def register(
 
 
 def _made(makers: dict[type, Callable[[Any], str]], shown: object) -> str | None:
+    # Imported at the first display only, so that models and graphs do not load drawing.
     import_module(MAKERS)
     for kind in type(shown).__mro__:
         if kind in makers:

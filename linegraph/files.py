@@ -122,8 +122,10 @@ def write_all(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]) 
                 final.parent.mkdir(parents=True, exist_ok=True)
                 if final.is_dir():
                     raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(final))
+            # All contents are complete; from here on files are only renamed.
             for temporary, final in staged:
                 os.replace(temporary, final)
+            # Devices last: what is written to them cannot be taken back.
             for final, stream in streams:
                 _pour(str(final), stream)
         except BaseException:

@@ -255,6 +255,7 @@ class _Making:
         node, layer = self.found.node, self.found.layer
         low, high = sorted((edge.tail, edge.head))
         ends = (low, high)
+        # Arches to ground have separate ends on the rail and share nothing.
         if GROUND in ends or ends not in self.arches:
             band = 2 * layer[node[low]] + 1
             cell = self.arches[ends] = self.add(Cell(band, ["low", "high"]), key, 1, k)

@@ -42,6 +42,7 @@ def png_bytes(scene: Scene) -> bytes:
     scale = min(SCALE, MOST_PIXELS / max(scene.width, scene.height))
     with matplotlib.rc_context(), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # letters that the font does not have
+        # Settings of the user must not change the picture.
         matplotlib.rcdefaults()
         size = (scene.width / POINTS, scene.height / POINTS)
         figure = Figure(figsize=size, dpi=scale * POINTS, facecolor=PAPER)
@@ -54,6 +55,7 @@ def png_bytes(scene: Scene) -> bytes:
             artist.set_zorder(place)
             axes.add_artist(artist)
         file = io.BytesIO()
+        # The version of matplotlib is left out of the file, so that equal pictures have equal bytes.
         canvas.print_png(file, metadata={"Software": None})  # type: ignore[no-untyped-call]
     return file.getvalue()
 

@@ -174,6 +174,7 @@ def link_values(
         moments[link] = joined(moments[link], body_moments(model.bodies[name], resolve, here))
     values: list[Scalar] = []
     for total in moments:
+        # Stored row by row, listed column by column as in Pinocchio.
         xx, xy, xz, yy, yz, zz = total.inertia
         values += [total.mass, *total.first, xx, xy, yy, xz, yz, zz]
     return values

@@ -150,6 +150,7 @@ def _problem(name: str, scope: Scope, spot: Spot, names: Names) -> str:
         return ""
     if rate or name in ("t", "x", "v") or _declared(name, names):
         return f"{name} cannot stand here: {ALLOWED[scope]}"
+    # The name may be a coordinate of a joint that is wrong itself; that joint's error is enough.
     if names.incomplete and scope >= Scope.STATE:
         return ""
     hint = (

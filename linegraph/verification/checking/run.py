@@ -100,6 +100,7 @@ def _points(derivation: Derived, seed: int) -> tuple[list[Point], bool]:
     """
     equations_: Asked = {"M": lambda p: p.bodies.mass_matrix, "h": lambda p: p.bodies.bias}
     solved: Asked = {"a": lambda p: p.motion[0]}
+    # If M is nearly singular at all states, at least M and h can be compared.
     for moving in (False,) if derivation.idle else (True, False):
         asked = [equations_, solved] if moving else [equations_]
         drawing = Drawing(derivation, random.Random(seed), Kept(), asked)

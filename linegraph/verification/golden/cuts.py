@@ -183,6 +183,7 @@ class Cuts:
 
         try:
             here = y(x[0], v[0])
+            # Coarse differences are enough: only the size of the slopes matters.
             apart = abs(y(x[0] + ASIDE * x[1], v[0]) - here) + abs(
                 y(x[0], v[0] + ASIDE * v[1]) - here
             )

@@ -268,6 +268,7 @@ class Derivatives:
             for motion, unit in zip(motions.T, units, strict=True)
         ]
         gaps = np.array(columns).reshape(self._count, len(point.q)).T
+        # N has full column rank, and the gaps keep quaternions normalised, so they lie in its range.
         return np.linalg.pinv(motions) @ gaps
 
     @cached_property

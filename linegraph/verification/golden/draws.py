@@ -167,6 +167,7 @@ class Drawing:
         for attempt in range(TRIES):
             # Roots, logarithms and gaps need positive arguments, so every second try draws positive values.
             low = -1.0 if attempt % 2 == 0 else 0.2
+            # Later tries keep the model's own parameters: laws may be undefined for others.
             varied = self.varied and place % 2 == 1 and attempt < TRIES // 2
             try:
                 rest = place == 0 and attempt < 2

@@ -336,6 +336,8 @@ class Point:
         others = [k for k in range(n) if k not in kept]
         measures = self.walk.numeric.sizes
         down, of_v = of_rows(J, measures), np.array(measures.velocities, float)[others]
+        # Redundant constraints leave J rank-deficient; scaling and threshold are those of the assembly, so
+        # that both find the same rank.
         inverse = np.linalg.pinv(pure(J, measures)[:, others], rcond=DEPENDENT)
         inverse = of_v[:, None] * inverse / down
         T, rest = np.zeros((n, len(kept))), np.zeros(n)

@@ -85,6 +85,7 @@ class Complexes:
         """
         z, count = complex(base), int(2 * exponent)
         root = of_numbers("sqrt", z.real)
+        # With n twice the exponent, the derivative n / 2 root^(n - 2) is finite at zero from n = 2 on.
         least = 2 if z.imag else 0
         if root == 0 and count < least:
             raise ModelError(
@@ -109,6 +110,7 @@ class Complexes:
         if not any(isinstance(part, complex) for part in x):
             return of_numbers(name, *x)
         z = [complex(part) for part in x]
+        # The real part is that of the other routes; cmath may differ from it in the last digit.
         real = of_numbers(name, *(part.real for part in z))
         if name in _OWN:
             return _OWN[name](*(x if name in ("min", "max") else z))

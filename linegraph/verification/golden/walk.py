@@ -217,6 +217,7 @@ class Walk:
                 rotation = transpose(rotation)
                 shift = negate(times(rotation, shift))
             near = self.at(found, link.parent, link.at, link.rotation.matrix())
+            # Absolute angles are measured from ground, not from the link before.
             whole = rotation if link.in_space else product(near.rotation, rotation)
             found.append(Pose(whole, add(near.origin, times(near.rotation, shift))))
         return found
@@ -249,6 +250,7 @@ class Walk:
         origin, going, pull = (
             x + np.einsum("ijd,j->id", y, arm) for x, y in zip(shifts, turns, strict=True)
         )
+        # The position itself is the same in all directions.
         turn = turn[:, :, 0]
         # Ω = Ṙ Rᵀ, and its derivative R̈ Rᵀ + Ṙ Ṙᵀ along the state's own motion.
         omega = np.einsum("ijd,kj->ikd", turning, turn)
