@@ -1,7 +1,7 @@
 """linegraph: equations of motion from linear (terminal) graphs, derived symbolically, emitted as code.
 
-What is exported here is imported when it is first used: the command line starts at once, and an interrupt
-while it imports ends it without a traceback.
+Public names are imported when they are first used. The command line therefore starts quickly, and an
+interrupt during imports ends it without a traceback.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ _MODULES = {
     "simplify": "symbolic.simplify",
     "trees": "programs.tree_costs",
 }
-"""The module of each public name."""
+"""Module of each public name."""
 
 
 def __getattr__(name: str) -> Any:

@@ -1,6 +1,6 @@
-"""The command `linegraph`, and `python -m linegraph`: the command line, and how a process ends.
+"""The command `linegraph`, and `python -m linegraph`: runs the command line and ends the process.
 
-Everything else is imported inside `main`, so that an interrupt is one wherever it arrives.
+Everything else is imported inside `main`, so that an interrupt is handled at any time.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from linegraph.exits import BROKEN, INTERRUPTED, IO_FAILED
 def main() -> None:
     """Run the command line and end the process.
 
-    A reader that leaves, as ``head`` does, ends it by SIGPIPE like any other tool.
+    If a reader exits, as ``head`` does, SIGPIPE ends the process as it does any other tool.
     """
     if hasattr(signal, "SIGPIPE"):
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
@@ -27,6 +27,7 @@ def main() -> None:
 
         status = run()
         sys.stdout.flush()
+        # A command that succeeded has printed its result, which is lost if standard output is closed.
         if not written and status == 0:
             raise OSError(errno.EBADF, "it is closed")
     except KeyboardInterrupt:
@@ -47,10 +48,12 @@ def main() -> None:
 
 
 def _opened() -> bool:
-    """Put the null device in the place of standard streams that are closed, or files would take it.
+    """Replace closed standard streams by the null device.
+
+    Otherwise files opened later would get their descriptors, and prints would go into these files.
 
     Returns:
-        Whether what is printed goes anywhere.
+        Whether standard output is open.
     """
     written = getattr(sys, "stdout", None) is not None
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
@@ -67,7 +70,7 @@ def _tell(text: str) -> None:
 
 
 def _leave(status: int) -> None:
-    """End the process; what can no longer be written is not tried again."""
+    """End the process; output that cannot be written is not tried again."""
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()

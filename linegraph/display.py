@@ -1,7 +1,7 @@
-"""Displays in notebooks: types say that they are shown, a register says how.
+"""Displays in notebooks: a register of the functions that draw each type.
 
-A graph or a model knows nothing of pictures. It inherits `Displayed`; `notebook` enters the functions that
-draw it, and is loaded when something is shown for the first time.
+A graph or a model must not depend on drawing. It inherits `Displayed`; `notebook` registers the functions
+that draw it, and is imported when an object is displayed for the first time.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 MAKERS = "linegraph.notebook"
-"""The module that enters what makes displays."""
+"""The module that registers the functions."""
 
 _SVG: dict[type, Callable[[Any], str]] = {}
 _HTML: dict[type, Callable[[Any], str]] = {}
 
 
 class Displayed:
-    """Something that notebooks show as a picture or as HTML, if the register has a function for its type."""
+    """An object that notebooks show as a picture or HTML if a function is registered for its type."""
 
     def _repr_svg_(self) -> str | None:
         return _made(_SVG, self)
@@ -32,7 +32,13 @@ class Displayed:
 def register(
     kind: type, *, svg: Callable[[Any], str] | None = None, html: Callable[[Any], str] | None = None
 ) -> None:
-    """Enter the functions that show a type and all that inherits from it."""
+    """Register the functions that display a type and its subclasses.
+
+    Args:
+        kind: the type.
+        svg: returns the SVG text of an object.
+        html: returns the HTML of an object.
+    """
     if svg is not None:
         _SVG[kind] = svg
     if html is not None:
@@ -40,6 +46,7 @@ def register(
 
 
 def _made(makers: dict[type, Callable[[Any], str]], shown: object) -> str | None:
+    # Imported at the first display only, so that models and graphs do not load drawing.
     import_module(MAKERS)
     for kind in type(shown).__mro__:
         if kind in makers:

@@ -1,13 +1,13 @@
-"""Every error a user can cause, as one small tree.
+"""All errors that a user can cause.
 
     LinegraphError
-    ├── ModelError        the model says something that cannot be (a part, and why)
-    │   └── SourceError   the same, with the file and the line that said it
-    ├── SourceErrors      all that is wrong with a file, at once
+    ├── ModelError        a part of the model is impossible, with the reason
+    │   └── SourceError   the same, with file and line
+    ├── SourceErrors      all errors of a file at once
     ├── NameRefused       a name that cannot appear in emitted code
-    └── DeviceFailed      what is written to failed: a full disk, a pipe without a reader
+    └── DeviceFailed      writing failed: a full disk, a pipe without a reader
 
-All carry one complete sentence for the user. A bug raises something else.
+Each message is one complete sentence for the user. Any other exception is a bug of linegraph.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ MOST_PRINTED = 20
 
 
 class LinegraphError(Exception):
-    """Base of all errors that the input, not the program, is to blame for."""
+    """Base of all errors caused by the input and not by the program."""
 
 
 class ModelError(LinegraphError):
-    """The model cannot be: names the component and says what to do.
+    """An impossible model: names the part and says what to change.
 
     Args:
-        thing: what is at fault, as the user named it, e.g. ``joint "elbow"``.
-        problem: what is wrong with it and what would be right.
+        thing: the part at fault as the user named it, such as ``joint "elbow"``.
+        problem: what is wrong with it and how to correct it.
     """
 
     def __init__(self, thing: str, problem: str) -> None:
@@ -40,17 +40,17 @@ class ModelError(LinegraphError):
 
 
 class SourceError(ModelError):
-    """A `ModelError` placed in a file: ``robot.urdf:12: joint "elbow": ...``.
+    """A `ModelError` with its place in a file: ``robot.urdf:12: joint "elbow": ...``.
 
     Args:
         source: the file as the user named it.
-        line: the line, counted from 1; None where the file as a whole is meant.
-        thing: what is at fault.
-        problem: what is wrong with it and what would be right.
+        line: the line, counted from 1; None for the file as a whole.
+        thing: the part at fault.
+        problem: what is wrong with it and how to correct it.
     """
 
     def __init__(self, source: str, line: int | None, thing: str, problem: str) -> None:
-        """Prefix the place to the message."""
+        """Store the place, which `str` puts before the message."""
         super().__init__(thing, problem)
         self.source = source
         self.line = line
@@ -62,27 +62,27 @@ class SourceError(ModelError):
 
 
 class SourceErrors(LinegraphError):
-    """Several errors of one file; as text one line each, not more than a screen of them.
+    """Several errors of one file; the text has one line for each, at most a screenful.
 
     Args:
         errors: in the order of the file.
     """
 
     def __init__(self, errors: Iterable[SourceError]) -> None:
-        """Keep them all."""
+        """Keep all errors; the message lists the first `MOST_PRINTED`."""
         self.errors = tuple(errors)
         super().__init__("\n".join(self.messages()))
 
     def messages(self) -> list[str]:
-        """One line for each error, then how many more there are."""
+        """Return one line for each error, then the number of those left out."""
         shown = [str(error) for error in self.errors[:MOST_PRINTED]]
         more = len(self.errors) - len(shown)
         return [*shown, f"and {more} more"] if more else shown
 
 
 class NameRefused(LinegraphError):
-    """A name that emitted code cannot carry, or two names that become one there."""
+    """A name that is not possible in emitted code, or two names that become equal there."""
 
 
 class DeviceFailed(LinegraphError):
-    """Writing failed for a reason outside of the input: a full disk, a device, a pipe without a reader."""
+    """Writing failed for a reason other than the input: a full disk, a device, a pipe without a reader."""

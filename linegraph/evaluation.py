@@ -1,4 +1,4 @@
-"""Workspace of a derivation that compute: the emitted Python, loaded without a file."""
+"""Numeric functions of a derivation: the emitted Python, loaded without writing a file."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from linegraph.numeric.derived import Derived
 
 NAME = "expression"
-"""The function that computes a sympy expression."""
+"""Name of the function that evaluates a SymPy expression."""
 
 FRAME_FUNCTIONS = "frame_"
-"""How the names of functions of frames begin."""
+"""Prefix of the names of a frame's functions."""
 
 
 @dataclass(frozen=True)
@@ -37,12 +37,12 @@ class Function:
     """An emitted function, ready to be called.
 
     Attributes:
-        name: its own.
-        arguments: the names of what it takes.
-        model: the name of the model.
-        source: the Python it is from.
-        module: the same, loaded.
-        single: whether what it computes is one number and no array.
+        name: its name.
+        arguments: names of its arguments, in order.
+        model: name of the model.
+        source: text of the Python module that contains it.
+        module: the loaded module.
+        single: whether the result is one number instead of an array.
     """
 
     name: str
@@ -53,14 +53,18 @@ class Function:
     single: bool = False
 
     def __call__(self, *given: Any, parameters: Mapping[str, float] | None = None) -> Any:
-        """Call it with one state, or with many: arrays whose last axis is that of one.
+        """Call the function with one state, or with many: the last axis of an array is that of one state.
 
         Args:
-            given: q, v, ... as `arguments` lists them.
+            given: q, v, ... in the order of `arguments`, in SI units.
             parameters: values in place of the model's own.
 
+        Returns:
+            An array with the shape of the result after the leading axes of the arguments, or a tuple of
+            arrays.
+
         Raises:
-            ModelError: there are more or fewer arguments, or no such parameter.
+            ModelError: the number of arguments is wrong, or there is no such parameter.
         """
         if len(given) != len(self.arguments):
             problem = f"takes {', '.join(self.arguments) or 'nothing'}; got {len(given)} arguments"
@@ -80,15 +84,20 @@ class Function:
         return (own.replace(**given) if given else own,)
 
     def __repr__(self) -> str:
-        """Its name and arguments."""
+        """Return its name and arguments."""
         return f"<function {self.name}({', '.join(self.arguments)}) of {self.model}>"
 
 
 def function(derivation: Derived, what: Any, frames: Iterable[str] = ()) -> Function:
-    """An emitted function by its name, or one that computes a sympy expression.
+    """Return an emitted function by name, or a function that evaluates a SymPy expression.
+
+    Args:
+        derivation: the model.
+        what: name of a function, or a SymPy expression or matrix in the derivation's symbols.
+        frames: bodies, or frames of bodies as ``body.frame``, whose functions are available by name.
 
     Raises:
-        ModelError: there is no such function, or a symbol is not of this derivation.
+        ModelError: there is no such function, or a symbol does not belong to the derivation.
     """
     name = codegen.naming.identifier(derivation.system.name)
     if not isinstance(what, str):
@@ -110,7 +119,7 @@ def function(derivation: Derived, what: Any, frames: Iterable[str] = ()) -> Func
 
 
 def _maker(what: str) -> tuple[str, ...]:
-    """The key of `PROGRAMS` that makes a function, where it is known by the function's name."""
+    """Key of `PROGRAMS` that creates a function, where it follows from the function's name."""
     if what.startswith(FRAME_FUNCTIONS):
         kinds = [key for key in OF_FRAMES if what.endswith(key)]
         return (*kinds, "frames")[:1]
@@ -118,7 +127,7 @@ def _maker(what: str) -> tuple[str, ...]:
 
 
 def _of_expression(derivation: Derived, name: str, what: Any) -> Function:
-    """The function of an expression or a matrix: of q, v, u, a as far as it depends on them."""
+    """Function of an expression or matrix, with those of q, v, u, a as arguments on which it depends."""
     functions = Workspace(derivation, not derivation.system.parameters)
     whole = sympy.sympify(what, strict=True)
     dag, tree = functions.dag, functions.tree
@@ -129,7 +138,7 @@ def _of_expression(derivation: Derived, name: str, what: Any) -> Function:
     }
     symbols |= {**functions.tree.parameters, "t": dag.symbol("t")}
     single = not isinstance(whole, sympy.MatrixBase)
-    # a column is a vector to those who compute
+    # A column matrix becomes a vector: NumPy users expect shape (n,), not (n, 1).
     shape = (1,) if single else tuple(n for k, n in enumerate(whole.shape) if k == 0 or n != 1)
     try:
         entries = tuple(evaluate(e, dag, symbols) for e in ([whole] if single else whole))
@@ -147,7 +156,14 @@ def _of_expression(derivation: Derived, name: str, what: Any) -> Function:
 
 
 def loaded(derivation: Derived, module: Module, name: str, *, single: bool = False) -> Function:
-    """A function of a module, ready to be called; `single` if it computes one number and no array."""
+    """Load one function of a module.
+
+    Args:
+        derivation: the model.
+        module: the programs, rendered as Python.
+        name: name of the function.
+        single: whether its result is an array of one number, to be returned as a number.
+    """
     (source,) = codegen.render(module, "python").values()
     program = next(p for p in module.programs if p.name == name)
     arguments = tuple(a.name for a in program.arguments if a.name != "p")

@@ -1,7 +1,7 @@
-"""Writing files so that either all of them appear or none; and into what is no file.
+"""Writing files: all of them or none, and into devices.
 
-A regular file is replaced whole: an interrupted run leaves the old one. A device, a pipe or a socket is
-written into, never replaced.
+A regular file is replaced as a whole, so that an interrupted run leaves the old one. A device, a pipe or a
+socket is written into and never replaced.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
 
 
 STAGED = ".linegraph-"
-"""How the names begin that files have before they have their own."""
+"""Prefix of the temporary names under which files are written first."""
 
 DESCRIPTOR = re.compile(r"/dev/(stdin|stdout|stderr)|(?:/dev/fd|/proc/self/fd)/(\d+)")
-"""Names of what this process has open already."""
+"""Paths that denote file descriptors of this process."""
 
 STANDARD = {"stdin": 0, "stdout": 1, "stderr": 2}
 
 OF_DEVICES = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.ENXIO, errno.EPIPE)
-"""Errors that the name is not to blame for: a full disk, a device that fails, a reader that left."""
+"""Errors not caused by the path: a full disk, a failing device, a pipe whose reader has exited."""
 
 
 def is_stream(path: str | os.PathLike[str]) -> bool:
-    """Whether a path is a device, a pipe or the like: what is written goes into it and replaces nothing."""
+    """Whether a path is a device, a pipe or the like, into which output is written without replacing it."""
     place = Path(path)
     if DESCRIPTOR.fullmatch(os.fspath(path)):
         return True
@@ -44,10 +44,17 @@ def is_stream(path: str | os.PathLike[str]) -> bool:
 
 
 def write_file(path: str | os.PathLike[str], content: str | bytes) -> Path:
-    """Write one file, whole or not at all; into what is no regular file, as it is.
+    """Write one file, as a whole or not at all; a device or pipe is written into.
+
+    Args:
+        path: the file; its folder is created if missing.
+        content: text, written in UTF-8 with LF line ends, or bytes.
+
+    Returns:
+        The path.
 
     Raises:
-        LinegraphError: it cannot be written; `DeviceFailed` if the name is not to blame.
+        LinegraphError: it cannot be written; `DeviceFailed` if the path is not the cause.
     """
     target = Path(path)
     if is_stream(path):
@@ -60,11 +67,15 @@ def write_file(path: str | os.PathLike[str], content: str | bytes) -> Path:
 
 
 def write_new(path: str | os.PathLike[str], content: str) -> None:
-    """Write a file that must not be there yet; into what is no regular file, as it is.
+    """Write a file that must not exist yet; a device or pipe is written into.
+
+    Args:
+        path: the file, in an existing folder.
+        content: text, written in UTF-8 with LF line ends.
 
     Raises:
-        FileExistsError: it is there.
-        OSError: it cannot be written; nothing is left of it.
+        FileExistsError: the file exists.
+        OSError: it cannot be written; no part of it is left.
     """
     if is_stream(path):
         _pour(os.fspath(path), _bytes(content))
@@ -79,15 +90,21 @@ def write_new(path: str | os.PathLike[str], content: str) -> None:
 
 
 def write_all(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]) -> list[Path]:
-    """Write files under their names, or paths below the folder, replacing what stood there.
+    """Write files by name, or by path relative to a folder, replacing existing ones.
 
-    Texts are written in UTF-8 with LF line ends.
+    Everything is first written to temporary names in the folder and then moved, so that an interrupted run
+    leaves no incomplete file under a final name. A symbolic link is kept and its target replaced.
 
-    Everything is first written beside its place under another name and moved there last, so that an
-    interrupted run leaves no half file under a final name. A link stays, and what it points to is replaced.
+    Args:
+        folder: the folder, created if missing.
+        files: contents by name: texts, written in UTF-8 with LF line ends, or bytes.
+
+    Returns:
+        The paths, in the order of `files`.
 
     Raises:
-        LinegraphError: the folder cannot be made or written to; `DeviceFailed` if its name is not to blame.
+        LinegraphError: the folder cannot be created or written to; `DeviceFailed` if the path is not the
+            cause.
     """
     target = Path(folder)
     staged: list[tuple[str, Path]] = []
@@ -105,8 +122,10 @@ def write_all(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]) 
                 final.parent.mkdir(parents=True, exist_ok=True)
                 if final.is_dir():
                     raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(final))
+            # All contents are complete; from here on files are only renamed.
             for temporary, final in staged:
                 os.replace(temporary, final)
+            # Devices last: what is written to them cannot be taken back.
             for final, stream in streams:
                 _pour(str(final), stream)
         except BaseException:
@@ -119,7 +138,7 @@ def write_all(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]) 
 
 @contextlib.contextmanager
 def _explained(place: Path) -> Iterator[None]:
-    """Turn an error of the system into one of ours."""
+    """Turn an `OSError` into a `LinegraphError`."""
     try:
         yield
     except OSError as error:
@@ -139,7 +158,7 @@ def _bytes(content: str | bytes) -> bytes:
 
 
 def _pour(path: str, content: bytes) -> None:
-    """Write into what is there; of what this process has open already, where it has got to."""
+    """Write into an existing device or pipe; for an open descriptor, continue at its position."""
     found = DESCRIPTOR.fullmatch(path)
     if found:
         number = STANDARD[found[1]] if found[1] else int(found[2])
@@ -151,11 +170,12 @@ def _pour(path: str, content: bytes) -> None:
 
 
 def _stage(folder: Path, content: str | bytes) -> str:
-    """Write to a new file in the folder, with the permissions of an ordinary one."""
+    """Write to a new temporary file in the folder, with the permissions of an ordinary file."""
     handle, temporary = tempfile.mkstemp(prefix=STAGED, dir=folder)
     try:
         with os.fdopen(handle, "wb") as stream:
             stream.write(_bytes(content))
+        # mkstemp makes files private to the owner; the umask can be read only by setting it.
         mask = os.umask(0)
         os.umask(mask)
         os.chmod(temporary, 0o666 & ~mask)

@@ -1,4 +1,4 @@
-"""What notebooks show: pictures of graphs, short overviews of models and derivations."""
+"""Displays of notebooks: pictures of graphs, short overviews of models and derivations."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from linegraph.model.system import System
 from linegraph.notation.notation import Notation
 
 SMALL = 4
-"""A derivation with more velocities does not show its equations unasked."""
+"""Largest number of velocities for which a derivation displays its equations."""
 
 
 def _of_derivation(derivation: Derivation) -> str:
-    """Its size, its equations of motion if it is small, and the graph with the chosen tree."""
+    """HTML of a derivation: its size, its equations if it is small, and the graph with the chosen tree."""
     tree = derivation.structure
     sizes = (
         f"{len(tree.positions)} coordinates q, {len(tree.velocities)} velocities v, "
@@ -43,7 +43,7 @@ def _equations(derivation: Derivation) -> str:
 
 
 def _of_model(model: Model | System) -> str:
-    """Its bodies and joints, elements and components."""
+    """HTML of a model: bodies, joints, elements, constraints and components."""
     model = model.system()
     rows = [("body", name, "") for name in model.bodies]
     rows += [(joint.kind, joint.name, " → ".join(joint.between)) for joint in model.joints]

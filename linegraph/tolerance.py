@@ -1,16 +1,16 @@
-"""How closely loops close, and what counts as nothing: one set of numbers for assembly, checks and run time.
+"""Tolerances of closed loops, shared by assembly, checks and emitted code.
 
-All are pure numbers: positions, velocities and rows of J are first divided by sizes of the model itself, see
-`circuit_lengths`.
+All are dimensionless: positions, velocities and rows of J are first divided by sizes taken from the model
+(`circuit_lengths`).
 """
 
 from __future__ import annotations
 
 CLOSED = 1e-9
-"""A gap of this part of a loop's length is none."""
+"""Largest gap of a closed loop, relative to the loop's length."""
 
 DEPENDENT = 1e-7
-"""A direction of J that moves less than this per unit of velocity is rounding, or what gaps leave of it."""
+"""Singular values of J per unit of velocity below this are rounding or the effect of gaps."""
 
 ACCURATE = 1e-6
-"""The estimated relative error up to which accelerations and multipliers are returned."""
+"""Accelerations and multipliers are returned up to this estimated relative error."""

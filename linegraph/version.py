@@ -1,3 +1,3 @@
-"""The version, in one place: pyproject.toml reads it here."""
+"""The version number; pyproject.toml reads it from here."""
 
 __version__ = "0.1.0"

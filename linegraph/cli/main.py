@@ -1,7 +1,7 @@
 """The command line: `linegraph new`, `emit`, `derive`, `graph`, `show`, `check` and the other commands.
 
-Results go to standard output, messages and progress to standard error (`output`); nothing else prints.
-Exit statuses are those of `exits`. Heavy modules are imported by the command that needs them.
+Results go to standard output, messages and progress to standard error (`output`). Exit statuses are those
+of `exits`. Heavy modules are imported by the command that needs them, to keep start-up fast.
 """
 
 from __future__ import annotations
@@ -53,7 +53,12 @@ def main() -> None:
 
 
 def run() -> int:
-    """The exit status of this process's command line; what the system or the user breaks off is raised."""
+    """Run the command line of this process and return the exit status.
+
+    Raises:
+        KeyboardInterrupt: the user broke it off.
+        OSError: output could not be written.
+    """
     try:
         found = main.main(prog_name="linegraph", standalone_mode=False)
     except click.ClickException as error:
@@ -368,7 +373,7 @@ def completion(shell: str) -> None:
 def _read(
     source: str, base: str, locks: tuple[str, ...], parameters: str | None, snap: float
 ) -> Model:
-    """Read a model file or a URDF, lock joints, report what is odd."""
+    """Read a model file or a URDF, lock joints and print warnings."""
     from linegraph.readers.read import read
 
     model = read(source, base=base, symbolic=parameters == "symbolic", snap=snap)
@@ -381,6 +386,6 @@ def _read(
 
 
 def _wrote(path: Path) -> None:
-    """Tell of a file; what went into a device or a pipe may be the very output that this would spoil."""
+    """Print the path of a written file; nothing for a device or pipe, which may be standard output itself."""
     if not is_stream(path):
         click.echo(str(path))

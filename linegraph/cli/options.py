@@ -1,4 +1,4 @@
-"""The options that commands take."""
+"""Options of the commands."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ FURTHER = (
     "inertial_parameters",
     "power",
 )
-"""What `emit` writes only where it is asked for."""
+"""Functions that `emit` writes only on request."""
 
 FUNCTIONS = (
     "mass_matrix",
@@ -54,14 +54,14 @@ FUNCTIONS = (
     "frames",
     *FURTHER,
 )
-"""What functions `emit` can be asked for."""
+"""Functions whose names the command `emit` accepts."""
 
 ON_REQUEST = ("power", "regressor", "inertial_parameters")
-"""Those of them that are written only where they are asked for."""
+"""Functions that are written only if they are named."""
 
 
 def with_options(options: tuple[Option, ...]) -> Option:
-    """A decorator that adds options to a command, in this order."""
+    """Return a decorator that adds options to a command, in this order."""
 
     def add(command: Command) -> Command:
         for option in reversed(options):
@@ -72,7 +72,19 @@ def with_options(options: tuple[Option, ...]) -> Option:
 
 
 def assignment(text: str, option: str, default: float | None = None) -> tuple[str, float]:
-    """Split NAME=VALUE, or NAME where there is a default; a name may itself contain an equals sign."""
+    """Split NAME=VALUE; a name may itself contain an equals sign.
+
+    Args:
+        text: the text of the option, NAME=VALUE, or NAME alone if there is a default.
+        option: the option, for messages.
+        default: value for NAME alone; None if a value is required.
+
+    Returns:
+        The name and the value (rad or m).
+
+    Raises:
+        click.BadParameter: the value is not a number.
+    """
     name, sign, value = text.rpartition("=")
     if not sign and default is not None:
         return text, default
@@ -115,7 +127,7 @@ ABOUT_MODEL: tuple[Option, ...] = (
         "decimal angles.",
     ),
 )
-"""The argument and options that every command on a model takes."""
+"""Argument and options of every command that reads a model."""
 
 EMIT: tuple[Option, ...] = (
     click.option(
@@ -209,11 +221,11 @@ EMIT: tuple[Option, ...] = (
         help="Write C as a library of Arduino's: NAME/library.properties, NAME/src, NAME/examples.",
     ),
 )
-"""What `emit` takes besides."""
+"""Further options of `emit`."""
 
 
 def output(endings: str) -> Option:
-    """The file that a command writes."""
+    """Return the option for the output file."""
     return click.option(
         "-o",
         "--output",
@@ -232,7 +244,7 @@ SET: Option = click.option(
     multiple=True,
     help="Hold a coordinate at a value (rad or m). Repeatable.",
 )
-"""Where a mechanism is to stand."""
+"""Option that holds a coordinate of the mechanism."""
 
 GRAPH: tuple[Option, ...] = (
     output(".svg, .png or .dot, for Graphviz.  [default: SVG to standard output]"),
@@ -252,7 +264,7 @@ GRAPH: tuple[Option, ...] = (
     ),
     SET,
 )
-"""What `graph` takes besides."""
+"""Further options of `graph`."""
 
 DERIVE: tuple[Option, ...] = (
     click.option(
@@ -269,4 +281,4 @@ DERIVE: tuple[Option, ...] = (
         help="How far closed forms are simplified.",
     ),
 )
-"""What `derive` takes besides."""
+"""Further options of `derive`."""

@@ -1,4 +1,4 @@
-"""What the command line tells beside results: warnings, errors, progress; all on standard error."""
+"""Messages of the command line on standard error: warnings, errors and progress."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def explained() -> Iterator[None]:
-    """Turn an error of the user's into one message and exit status 2, one of a device into 74."""
+    """Turn an error of the user into one message and exit status 2, an error of a device into status 74."""
     try:
         yield
     except LinegraphError as error:
@@ -28,13 +28,13 @@ def explained() -> Iterator[None]:
 
 
 def warn(text: str) -> None:
-    """Tell what is odd."""
+    """Print a warning on standard error."""
     click.echo(f"{click.style('warning:', fg='yellow', bold=True)} {text}", err=True)
 
 
 @contextmanager
 def progress() -> Iterator[Callable[[str], None]]:
-    """Show the present stage on standard error while it is a terminal; leave nothing behind."""
+    """Show the present stage on standard error if it is a terminal, and erase it at the end."""
     if not sys.stderr.isatty():
         yield lambda text: None
         return

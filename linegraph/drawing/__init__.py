@@ -1,8 +1,9 @@
-"""Pictures: the system graph as papers draw it, the mechanism as engineers sketch it.
+"""Pictures: the system graph as in textbooks, and a sketch of the mechanism.
 
     Derivation ─→ Scene ─→ SVG, PNG          Derivation ─→ DOT
 
-A scene is laid out in whole units by rules of its own, so that the same model gives the same bytes.
+Scenes are laid out with integers and fixed widths of letters, so that a model gives the same bytes
+everywhere.
 """
 
 from linegraph.drawing.dot import dot_text

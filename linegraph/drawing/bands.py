@@ -1,8 +1,9 @@
-"""Things in bands, one above the other: in which order they stand, and where.
+"""Layered layout: cells in bands, one above the other; their order in each band, and their positions.
 
-Vertices and bodies stand in every second band; in between, and beside them, each edge has a lane of its own,
-as wide as its label where it carries that. So nothing can overlap, and what is left to decide is the order,
-for few crossings, and the places, for straight edges. All in integers: the same on every machine.
+Vertices and bodies occupy every second band. Between and beside them, each edge has a lane of its own, as
+wide as its label where it carries one, so nothing can overlap. What remains is to choose the order, for few
+crossings, by barycentres [Sugiyama et al. 1981], and the positions, for straight edges. All arithmetic is
+exact, with integers and fractions, so that results are the same on every machine.
 """
 
 from __future__ import annotations
@@ -22,14 +23,20 @@ Thing = TypeVar("Thing", bound=Hashable)
 
 GAP = 8
 FIRM = 4
-"""From this weight on a link is worth being exactly straight."""
+"""From this weight on, a link is made exactly straight if possible."""
 
 FINE = 16
-"""Places are calculated in this fraction of a unit."""
+"""Number of steps per unit in which positions are calculated."""
 
 
 class BandLink(NamedTuple):
-    """What connects a port of a thing with one in the band above; `weight` is how straight it shall be."""
+    """A connection of a cell's port with a port in the band above.
+
+    Attributes:
+        low, low_port: the cell in the lower band and its port.
+        high, high_port: the cell in the upper band and its port.
+        weight: importance of drawing it straight.
+    """
 
     low: int
     low_port: str
@@ -40,13 +47,14 @@ class BandLink(NamedTuple):
 
 @dataclass
 class Cell:
-    """One thing in a band.
+    """A vertex, body or lane in a band.
 
     Attributes:
-        ports: where links end, from left to right.
-        left, right: how far it reaches from its reference to either side.
-        offsets: of the ports from the reference.
-        x: of the reference, once placed.
+        band: index of the band, from below.
+        ports: names of the points where links end, from left to right.
+        left, right: extent to both sides of the reference point.
+        offsets: positions of the ports relative to the reference point.
+        x: position of the reference point, once placed.
     """
 
     band: int
@@ -58,15 +66,15 @@ class Cell:
 
 
 class Bands:
-    """Cells in bands.
+    """Cells in bands, to be ordered and placed.
 
     Args:
-        cells: what there is; in each band from left to right as it is to begin with.
-        links: between neighbouring bands.
+        cells: all cells, in each band in the initial order from left to right.
+        links: connections between neighbouring bands.
     """
 
     def __init__(self, cells: Sequence[Cell], links: Sequence[BandLink]) -> None:
-        """Nothing is ordered yet."""
+        """Sort cells and links by band, in the given order."""
         self.apart: Mapping[tuple[int, int], int] = {}
         self.cells = cells
         self.rows: list[list[int]] = [
@@ -83,7 +91,10 @@ class Bands:
     # ---- order
 
     def order(self) -> None:
-        """Find an order with few crossings: by barycentres, up and down, the best one kept."""
+        """Find an order with few crossings and keep the best one met.
+
+        Bands are sorted by barycentres in sweeps up and down, with exchanges of neighbours in between.
+        """
         best = self._crossings()
         kept = self._state()
         for sweep in range(ORDERING_SWEEPS):
@@ -108,20 +119,20 @@ class Bands:
             cell.ports = ports
 
     def _ranks(self, row: int) -> dict[tuple[int, str], int]:
-        """The place of every port of a band, from the left."""
+        """Rank of every port of a band, from the left."""
         if not 0 <= row < len(self.rows):
             return {}
         ports = ((k, port) for k in self.rows[row] for port in self.cells[k].ports)
         return {port: place for place, port in enumerate(ports)}
 
     def _ends(self, k: int, upward: bool) -> list[tuple[str, tuple[int, str]]]:
-        """For each link to the band that is fixed: the own port and the far one."""
+        """Links of a cell to the band that is fixed: own port and far port."""
         if upward:
             return [(x.high_port, (x.low, x.low_port)) for x in self.below[k]]
         return [(x.low_port, (x.high, x.high_port)) for x in self.above[k]]
 
     def _sort(self, row: int, upward: bool) -> None:
-        """Sort a band by the mean place of what its things are linked to, and so their ports."""
+        """Sort the cells of a band, and their ports, by the mean rank of the ports they are linked to."""
         ranks = self._ranks(row - 1 if upward else row + 1)
         means: dict[int, Fraction] = {}
         for k in self.rows[row]:
@@ -137,7 +148,7 @@ class Bands:
         self.rows[row] = _resorted(self.rows[row], means)
 
     def _exchange(self) -> None:
-        """Exchange neighbours as long as that removes crossings."""
+        """Exchange neighbours where that removes crossings."""
         for row, cells in enumerate(self.rows):
             below, above = self._ranks(row - 1), self._ranks(row + 1)
             seen = {
@@ -155,7 +166,7 @@ class Bands:
                     cells[place], cells[place + 1] = b, a
 
     def _crossings(self) -> int:
-        """How many pairs of links cross."""
+        """Number of pairs of links that cross."""
         count = 0
         for row in range(len(self.rows) - 1):
             low, high = self._ranks(row), self._ranks(row + 1)
@@ -164,6 +175,8 @@ class Bands:
                 for k in self.rows[row]
                 for x in self.above[k]
             )
+            # Links cross if their upper ends are in the opposite order of their lower ends: count
+            # inversions.
             passed: list[int] = []
             for _, far in pairs:
                 count += len(passed) - bisect_right(passed, far)
@@ -173,10 +186,11 @@ class Bands:
     # ---- places
 
     def place(self, apart: Mapping[tuple[int, int], int]) -> None:
-        """Place everything: in this order, nothing too close, links as straight as they can be.
+        """Choose positions in the present order, with links as straight as possible.
 
         Args:
-            apart: how far the references of neighbours stand apart at least, if farther than for their size.
+            apart: least distance between the reference points of two neighbours, if larger than from their
+                sizes.
         """
         self.apart = apart
         for row in self.rows:
@@ -189,6 +203,7 @@ class Bands:
             upward = sweep % 2 == 0
             rows = self.rows if upward else self.rows[::-1]
             for row in rows:
+                # In the first sweeps one side has no useful positions yet and is ignored.
                 self._settle(row, sweep < 2, upward)
             if upward:
                 now = [cell.x for cell in self.cells]
@@ -204,7 +219,7 @@ class Bands:
             cell.x = (cell.x - first + FINE // 2) // FINE
 
     def _distances(self, row: list[int]) -> list[int]:
-        """How far the reference of each thing of a band is at least from that of the one before."""
+        """Least distance of each cell's reference point from that of the cell before."""
         found = [0] * min(1, len(row))
         for a, b in pairwise(row):
             near = self.cells[a].right + GAP + self.cells[b].left
@@ -212,7 +227,11 @@ class Bands:
         return found
 
     def _settle(self, row: list[int], one_sided: bool, upward: bool) -> None:
-        """Bring a band as near as it can be to where its links want it (pool adjacent violators)."""
+        """Place a band as close as possible to the positions its links require.
+
+        This is a weighted least-squares problem with order constraints, solved by pooling adjacent
+        violators.
+        """
         blocks: list[list[int]] = []  # weight, weighted sum, how many
         shifts: list[int] = []
         shift = 0
@@ -231,7 +250,7 @@ class Bands:
                 at += 1
 
     def _straighten(self, row: list[int], *, upward: bool) -> None:
-        """Bring things exactly over (or under) what they are firmly linked to; what is not makes room."""
+        """Place cells exactly above (or below) those they are firmly linked to; others make room."""
         for place, k in enumerate(row):
             links = [(x, x.low, x.low_port, x.high_port) for x in self.below[k] if upward]
             links += [(x, x.high, x.high_port, x.low_port) for x in self.above[k] if not upward]
@@ -246,7 +265,7 @@ class Bands:
                     break
 
     def _shift(self, row: list[int], place: int, wish: int) -> bool:
-        """Move one thing, and loose ones out of its way; whether that could be done."""
+        """Move a cell and the loose ones in its way; return whether that was possible."""
         distances = self._distances(row)
         moved = {place: wish}
         for sense in (-1, 1):
@@ -268,12 +287,12 @@ class Bands:
         return any(x.weight >= FIRM for x in (*self.below[k], *self.above[k]))
 
     def _over(self, far: int, far_port: str, k: int, port: str) -> int:
-        """Where a thing's link to a far port is straight."""
+        """Position of a cell for which its link to a far port is straight."""
         ahead = self.cells[far].offsets.get(far_port, 0) - self.cells[k].offsets.get(port, 0)
         return self.cells[far].x + ahead * FINE
 
     def _wish(self, k: int, one_sided: bool, upward: bool) -> tuple[int, int]:
-        """The weight of a thing's links, and the weighted sum of the places they want it at."""
+        """Total weight of a cell's links, and the weighted sum of the positions they require."""
         weight = wish = 0
         links = [
             (x, x.low, x.low_port, x.high_port) for x in self.below[k] if upward or not one_sided
@@ -294,11 +313,11 @@ def _mean(block: list[int]) -> int:
 
 
 def _resorted(things: Sequence[Thing], by: dict[Thing, Fraction]) -> list[Thing]:
-    """Those that have a value sorted by it among the places they take; the others stay."""
+    """Sort those that have a value among the places they occupy; the others stay."""
     order = iter(sorted((x for x in things if x in by), key=lambda x: by[x]))
     return [next(order) if x in by else x for x in things]
 
 
 def _inverted(left: Iterable[int], right: Sequence[int]) -> int:
-    """How many pairs stand the wrong way round."""
+    """Number of pairs in the wrong order."""
     return sum(1 for a in left for b in right if a > b)

@@ -1,8 +1,8 @@
-"""A body in the picture of a graph: a tinted region with its vertices, its rigid arms and its inertia edge.
+"""A body in the picture of a graph: a tinted region with its vertices, rigid arms and inertia edge.
 
-Vertices that lead towards ground stand on the lower border, those that lead away from it on the upper one,
-those that do both inside. The arms run from the mass centre along a common stem. The inertia edge ends in a
-ground sign of its own instead of running to the rail.
+Vertices with edges towards ground are on the lower border, those with edges away from it on the upper one,
+those with both inside. The arms start at the mass centre and share a stem. The inertia edge ends at a
+ground symbol of its own, since lines of all bodies to the rail would hide the graph.
 """
 
 from __future__ import annotations
@@ -36,23 +36,26 @@ if TYPE_CHECKING:
     from linegraph.graph.multigraph import Edge
 
 HEIGHT, STEM = 48, 26
-"""Of a body's region, and of the stem from its top."""
+"""Height of a body's region, and distance of the stem from its top."""
 
 INERTIA = "inertia"
 LONGEST_FRAME = 24
 FAN = 8
-"""How far apart edges leave a body that have a vertex inside it in common."""
+"""Distance between edges that leave a body from a common vertex inside it."""
 ARM = Pen(FAINT, 1)
 
 
 @dataclass
 class BodyArea:
-    """What is known of a body before it is drawn.
+    """A body before its region is laid out.
 
     Attributes:
-        arms: the edge to each of its frames' vertices.
-        inertia: its inertia edge and whether that is a branch.
-        up, down: how many edges its vertices have away from ground, and towards it.
+        name: its name.
+        center: vertex of its mass centre.
+        arms: the rigid arm to each of its frames' vertices.
+        inertia: its inertia edge.
+        bold: whether the inertia edge is a branch.
+        up, down: numbers of edges of its vertices away from ground and towards it.
     """
 
     name: str
@@ -64,13 +67,19 @@ class BodyArea:
     down: dict[str, int] = field(default_factory=dict)
 
     def label(self, vertex: str) -> str:
-        """What a frame is called inside the body; its own frame has no name beside the body's."""
+        """Name of a frame inside the body; empty for the body's own frame."""
         return short(vertex.removeprefix(self.name).removeprefix("."), LONGEST_FRAME)
 
 
 @dataclass(frozen=True)
 class Shape:
-    """Where things are in a body's region, from its upper left corner."""
+    """Layout of a body's region, from its upper left corner.
+
+    Attributes:
+        width: its width.
+        places: positions of vertices.
+        info: left end of the name and of the mass centre.
+    """
 
     width: int
     places: dict[str, tuple[int, int]]
@@ -78,9 +87,13 @@ class Shape:
 
 
 def shape(body: BodyArea, ports: Sequence[str]) -> Shape:
-    """Lay out a body's vertices, in the order given, and its name.
+    """Lay out a body's vertices and its name.
 
-    Rows end at the stem's root, so that a vertex above and one below stand in one line.
+    The upper and the lower row end at the same place, which keeps vertices above and below aligned.
+
+    Args:
+        body: the body.
+        ports: its vertices, from left to right.
     """
     top = bottom = 6
     places: dict[str, tuple[int, int]] = {}
@@ -111,7 +124,7 @@ def shape(body: BodyArea, ports: Sequence[str]) -> Shape:
 def _aligned(
     places: dict[str, tuple[int, int]], top: int, bottom: int
 ) -> dict[str, tuple[int, int]]:
-    """Shift what follows the last vertex with edges on both sides to the right, in the shorter row."""
+    """In the shorter row, shift the vertices behind the last one with edges on both sides to the right."""
     last = max((k for k, (_, y) in enumerate(places.values()) if y == STEM - 10), default=-1)
     end = max(top, bottom)
     shift = {0: end - top, HEIGHT: end - bottom}
@@ -122,7 +135,15 @@ def _aligned(
 
 
 def drawn(body: BodyArea, shape: Shape) -> tuple[list[Item], list[Item]]:
-    """The region with its arms, and what stands above edges; from the upper left corner."""
+    """Draw a body from its upper left corner.
+
+    Args:
+        body: the body.
+        shape: its layout.
+
+    Returns:
+        Items below edges (region and arms) and items above them (vertices).
+    """
     name = short(body.name)
     region = Region(0, 0, shape.width, HEIGHT, 10, Pen(EDGE_OF_TINT, 1), TINT)
     title = Text(shape.info, 13, name, 11, bold=True)
@@ -143,7 +164,7 @@ def drawn(body: BodyArea, shape: Shape) -> tuple[list[Item], list[Item]]:
 
 
 def _arm(hub: tuple[int, int], end: tuple[int, int]) -> Stroke:
-    """Along the stem, then round the corner to the vertex."""
+    """A line along the stem and around a corner to the vertex."""
     (x, y), r = end, min(8, abs(end[1] - hub[1]))
     turn = hub[1] + (r if y > hub[1] else -r)
     corner = ((x + r / 2, hub[1]), (x, (hub[1] + turn) / 2), (x, turn))
@@ -162,12 +183,18 @@ def _vertex(body: BodyArea, vertex: str, x: int, y: int) -> Part:
 
 
 def _center(x: int, y: int) -> tuple[Item, ...]:
-    """The quartered disc."""
+    """The symbol of a mass centre: a quartered disc."""
     return quartered(x, y, 5)
 
 
 def quartered(x: float, y: float, r: float) -> tuple[Item, ...]:
-    """The sign of a mass centre."""
+    """The symbol of a mass centre, a quartered disc.
+
+    Args:
+        x: position of its centre.
+        y: position of its centre.
+        r: its radius.
+    """
     k = 0.5523 * r
     right = ((x + k, y - r), (x + r, y - k), (x + r, y))
     left = ((x - k, y + r), (x - r, y + k), (x - r, y))
@@ -179,7 +206,7 @@ def quartered(x: float, y: float, r: float) -> tuple[Item, ...]:
 
 
 def _inertia(body: BodyArea, hub: tuple[int, int]) -> Part:
-    """The inertia edge: from a ground sign to the mass centre."""
+    """The inertia edge, from a ground symbol to the mass centre."""
     from linegraph.drawing.looks import BRANCH_PEN, CHORD_PEN
 
     assert body.inertia is not None
@@ -198,7 +225,12 @@ def _inertia(body: BodyArea, hub: tuple[int, int]) -> Part:
 
 
 def ground_sign(x: float, y: float) -> tuple[Item, ...]:
-    """An upright piece of ground, hatched on its right."""
+    """An upright ground symbol, hatched on its right.
+
+    Args:
+        x: position of its middle.
+        y: position of its middle.
+    """
     pen = Pen(INK, 0.8)
     hatch = [line((x, y - 6 + 4 * k), (x + 4, y - 9 + 4 * k), pen=pen) for k in range(4)]
     return (line((x, y - 7), (x, y + 7), pen=Pen(INK, 1.6)), *hatch)

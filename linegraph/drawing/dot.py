@@ -1,4 +1,4 @@
-"""The same graph for Graphviz, for those who want to lay it out or edit it themselves."""
+"""The system graph in the DOT language of Graphviz, for layout or editing there."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ _STYLES = {kind: "dashed" if dash else "solid" for kind, dash in DASHES.items()}
 
 
 def dot_text(derivation: Derived, subspace: str | Iterable[str] | None = None) -> str:
-    """The system graph in the language DOT: a cluster for each subspace and each body, branches bold.
+    """Write the system graph in DOT: a cluster for each subspace and body, branches bold.
 
     Args:
         derivation: a derived model.
-        subspace: the subspaces to write, by name; all if left out.
+        subspace: names of the subspaces to write; all if left out.
 
     Raises:
         ModelError: there is no such subspace.
@@ -41,13 +41,13 @@ def dot_text(derivation: Derived, subspace: str | Iterable[str] | None = None) -
 
 
 def quoted(text: str) -> str:
-    """A quoted string of DOT: nothing in it is taken as an escape."""
+    """Quote text for DOT, so that nothing in it is an escape."""
     text = clean(text).replace("\\", "\\\\").replace('"', '\\"')
     return f'"{text}"'
 
 
 def _panel(k: int, title: str, topology: Topology, kinds: Mapping[str, str]) -> list[str]:
-    """One subspace."""
+    """The cluster of one subspace."""
     projection = topology.projection
     lines = [f"  subgraph cluster_{k} {{", f"    label={quoted(title)};"]
     inside: dict[str, list[str]] = {}
@@ -79,7 +79,7 @@ def _panel(k: int, title: str, topology: Topology, kinds: Mapping[str, str]) -> 
 
 
 def _vertex(k: int, vertex: str) -> str:
-    """A point with its name beside it; ground a bar. Names are made unique by the number of the subspace."""
+    """A labelled point, or a bar for ground; the subspace's number makes its name unique."""
     looks = 'shape=box, style=filled, fillcolor=black, width=1.5, height=0.06, label="", '
     return (
         f"{quoted(f'{k}:{vertex}')} [{looks if vertex == GROUND else ''}xlabel={quoted(vertex)}];"

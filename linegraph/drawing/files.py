@@ -1,4 +1,4 @@
-"""From a derivation to the content of a file, by its ending."""
+"""From a derivation to the content of a picture file, by its ending."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ ENDINGS = (".svg", ".png", ".dot")
 
 
 def require_ending(output: str | None) -> None:
-    """Refuse a file of another kind, before anything is derived.
+    """Refuse an unknown ending before anything is derived.
 
     Raises:
-        LinegraphError: names the three that can be written.
+        LinegraphError: the ending is not one of `ENDINGS`.
     """
     if output is not None and _ending(output) not in ENDINGS:
         raise LinegraphError(f"cannot draw to {output}: the name must end in .svg, .png or .dot")
 
 
 def _ending(output: str) -> str:
-    """The ending of a file's name; of a device or a pipe that has none, as of standard output, SVG's."""
+    """Ending of a file name; that of SVG for a device or pipe without one."""
     ending = Path(output).suffix.lower()
     return ".svg" if ending not in ENDINGS and is_stream(output) else ending
 
@@ -45,17 +45,20 @@ def picture(
     subspaces: Sequence[str] = (),
     hold: Mapping[str, float] | None = None,
 ) -> str | bytes:
-    """The content of a file called `output`; SVG where there is no name.
+    """Draw the content of a picture file.
 
     Args:
         derivation: a derived model.
-        output: the file's name, whose ending says what it is.
+        output: name of the file, whose ending decides the format; SVG if left out.
         what: "graph", "sketch" or "both".
-        subspaces: those to draw; all if none are given.
-        hold: coordinates of the sketch that keep the value given, by name.
+        subspaces: names of the subspaces to draw; all if empty.
+        hold: values (rad or m) of coordinates of the sketch, by name.
+
+    Returns:
+        Text for SVG and DOT, bytes for PNG.
 
     Raises:
-        LinegraphError: it cannot be drawn, or what is asked for contradicts itself.
+        LinegraphError: it cannot be drawn, or arguments contradict each other.
     """
     require_ending(output)
     ending = ".svg" if output is None else _ending(output)
@@ -79,5 +82,10 @@ def picture(
 
 
 def write(output: str, content: str | bytes) -> Path:
-    """Write a file whole, or not at all; into a device or a pipe as it is."""
+    """Write a file, completely or not at all; a device or pipe is written into.
+
+    Args:
+        output: the file.
+        content: its content.
+    """
     return write_file(output, content)

@@ -1,4 +1,4 @@
-"""Names beside things: each where it is free, near its thing; else farther off, with a line to it."""
+"""Placing of names next to things: at the nearest free position, with a line where that is far."""
 
 from __future__ import annotations
 
@@ -41,20 +41,21 @@ _DIRECTIONS = (
 )
 _REACHES = (11, 17, 25, 36, 50, 68, 90, 115, 145)
 LEADING = 24
-"""From this distance on a line leads to the label."""
+"""Least distance at which a line leads to a label."""
 
 CROSSED = 4
-"""What it costs to stand on a line, in steps of distance."""
+"""Cost of covering a line, in steps of distance."""
 
 
 @dataclass
 class Labels:
-    """The labels of a picture while they are placed.
+    """Labels of a picture during their placement.
 
     Attributes:
-        taken: what no label may cover.
-        lines: what labels should rather not cover: points along lines.
-        inside: where labels are to stay; those that find no place stand to the right of it.
+        inside: area for labels; those that find no place go to the right of it.
+        taken: areas that labels must not cover.
+        lines: points along lines that labels should not cover.
+        aside: number of labels to the right of the area.
     """
 
     inside: Box
@@ -63,7 +64,7 @@ class Labels:
     aside: int = 0
 
     def along(self, points: Iterable[Point]) -> None:
-        """Note a line that labels should rather not cover."""
+        """Add a line that labels should not cover."""
         before: Point | None = None
         for point in points:
             if before is not None:
@@ -75,7 +76,18 @@ class Labels:
     def place(
         self, name: str, at: Point, *, color: str = INK, bold: bool = False, size: int = NORMAL
     ) -> list[Item]:
-        """The name beside a point, and the line to it where it stands far off."""
+        """Place a name near a point.
+
+        Args:
+            name: the name, shortened if it is long.
+            at: the point.
+            color: colour of the text.
+            bold: whether the text is bold.
+            size: size of the text.
+
+        Returns:
+            The text, and a line to it if it is far from the point.
+        """
         text = short(name, LONGEST_LABEL)
         best: tuple[float, Text, float] | None = None
         for step, reach in enumerate(_REACHES):
@@ -97,7 +109,7 @@ class Labels:
         self.taken.append(label.box)
         box = label.box
         ground: list[Item] = []
-        if any(_holds(box, p) for p in self.lines):  # a line ends where a name stands on it
+        if any(_holds(box, p) for p in self.lines):  # white ground interrupts the line
             wide, high = tenth(box.right - box.left), tenth(box.bottom - box.top)
             ground = [Region(tenth(box.left), tenth(box.top), wide, high, 2, None, PAPER)]
         if best[2] < LEADING:

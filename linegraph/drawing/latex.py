@@ -1,7 +1,7 @@
-r"""A scene as LaTeX's own ``picture``: text as text, lines as the few operators of PDF that they are.
+"""A scene as a LaTeX ``picture``: text set by LaTeX, lines as operators of PDF.
 
-It needs ``color`` and the commands of `PREAMBLE`, nothing else. Where LaTeX writes no PDF, text stands
-alone.
+It needs the package ``color`` and the commands of `PREAMBLE`. Where LaTeX writes no PDF, only the text
+appears.
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ PREAMBLE = r"""\ifdefined\pdfextension % LuaTeX
 \fi\fi\fi
 \newcommand{\lettering}[2]{\fontsize{#1}{#1}\selectfont\sffamily\color[rgb]{#2}}
 """
-"""What the head of a document has to define."""
+"""Definitions for the head of the document."""
 
 ROUND = 0.5523
-"""Of the radius: how far the controls of a quarter of a circle are out."""
+"""Distance of the control points of a quarter circle, relative to the radius."""
 
 
 def picture(scene: Scene, width: float, height: float, largest: float = 0.75) -> str:
-    r"""The picture, as large as it may be.
+    r"""Write a scene as a picture that fits into a given space.
 
     Args:
-        scene: what to show.
-        width: of the place for it, in points.
-        height: of that place.
-        largest: points for each unit of the scene at most.
+        scene: the scene.
+        width: width of the space, in points.
+        height: height of the space, in points.
+        largest: largest number of points per unit of the scene.
 
     Example:
         >>> from linegraph.drawing.scene import Scene, Text
@@ -62,18 +62,23 @@ def picture(scene: Scene, width: float, height: float, largest: float = 0.75) ->
 
 
 def decimal(x: float) -> str:
-    """Three digits behind the point, without what says nothing."""
+    """A number with three decimals, without trailing zeros."""
     return f"{x:.3f}".rstrip("0").rstrip(".")
 
 
 def color(hexadecimal: str, sign: str = " ") -> str:
-    """Red, green and blue from 0 to 1."""
+    """Red, green and blue of a colour, each from 0 to 1.
+
+    Args:
+        hexadecimal: the colour as ``#rrggbb``.
+        sign: separator.
+    """
     return sign.join(decimal(int(hexadecimal[k : k + 2], 16) / 255) for k in (1, 3, 5))
 
 
 def _written(items: tuple[Item, ...], height: int, scale: float) -> Iterator[str]:
-    """Neighbouring lines in one piece."""
-    # points of PDF are larger than those of TeX
+    """Write items, consecutive lines as one object."""
+    # A point of PDF is 1/72 in, one of TeX 1/72.27 in.
     pdf = scale * 72 / 72.27
     steps: list[str] = []
     for item in _flat(items):
@@ -126,7 +131,7 @@ def _shape(item: Stroke | Disc | Region) -> str:
 
 
 def _rounded(x: float, y: float, width: float, height: float, radius: float) -> list[str]:
-    """A rectangle with round corners."""
+    """The path of a rectangle with round corners."""
     right, low = x + width, y + height
     if not radius:
         return [f"{_at((x, y))} {number(width)} {number(height)} re"]

@@ -1,7 +1,7 @@
-"""Where the vertices of one projection stand, and by which way its edges run.
+"""Layout of one subspace's graph: positions of vertices and routes of edges.
 
-Layers count branches from ground: layer 0 is the rail, layer k stands in band 2k, and the labels of what
-connects it with the next are in band 2k + 1.
+A layer is the number of branches from ground. Layer 0 is the rail, layer k occupies band 2k, and the labels
+of the edges from it to the next layer are in band 2k + 1.
 """
 
 from __future__ import annotations
@@ -23,31 +23,32 @@ if TYPE_CHECKING:
     from linegraph.graph.multigraph import Edge, Projection
 
 DOT, LABEL_BAND = 18, 17
-"""Heights of bands of plain vertices and of labels."""
+"""Heights of bands of vertices without bodies and of bands of labels."""
 
 LANE = 4
 """Half the width of a lane without a label."""
 
 LEAST_ZONE, MOST_ZONE = 10, 70
 ARCH, LEG, RISE = 19, 6, 7
-"""Heights of the zones between bands, in which lines bend; of an arch over an arch, how far it is wider, and
-the height of the lowest."""
+"""Height of an arch above the next lower one, its additional width on each side, and the height of the lowest
+arch.
+"""
 
 STRAIGHT = 12
-"""How straight lanes are wanted, beside edges of branches (4) and chords (1)."""
+"""Weight of straight lanes; edges of branches have 4 and chords 1."""
 
 
 @dataclass
 class Route:
-    """The way of an edge: its cells from the lower end to the upper one.
+    """The route of an edge: its cells from the lower end to the upper one.
 
     Attributes:
-        edge: what it is of.
-        upward: whether the edge's tail is the lower end.
-        cells: (cell, port); in an arch the two ends, and the cell of the label in between.
-        label: the place in `cells` of the one with the label.
-        arch: of an edge with both ends in one layer its place in the pile of parallel ones, from below; -1
-            for others.
+        edge: the edge.
+        upward: whether its tail is the lower end.
+        cells: cells with ports; for an arch the two ends with the label's cell between them.
+        label: index in `cells` of the cell with the label.
+        arch: for an edge with both ends in one layer, its index in the stack of parallel edges, from below;
+            else -1.
     """
 
     edge: Edge
@@ -59,13 +60,19 @@ class Route:
 
 @dataclass
 class Plan:
-    """One projection laid out, y counted upward from the rail.
+    """The layout of one graph, with y upward from the rail.
 
     Attributes:
-        bodies: by name; `cells` of bodies and vertices by name.
-        routes: of the edges outside bodies.
-        piles: how many arches are above each other, by their cell; `apart` how far ends stand apart for them.
-        floors, ceilings: of each band.
+        bodies, shapes: bodies and the layouts of their regions, by name.
+        node: the body or vertex outside bodies that each vertex belongs to.
+        layer: layers of bodies and vertices outside bodies.
+        cell, cells: index of the cell of each of these, and all cells.
+        routes: routes of the edges outside bodies.
+        arms: rigid arms of ground.
+        apart: least distances between ends of arches.
+        piles: number of arches in each stack, by cell.
+        floors, ceilings: lower and upper end of each band.
+        width, height: the size.
     """
 
     bodies: dict[str, BodyArea] = field(default_factory=dict)
@@ -84,12 +91,22 @@ class Plan:
     height: int = 0
 
     def port(self, cell: int, port: str) -> int:
-        """Where a port is, from the left."""
+        """Position of a port, from the left.
+
+        Args:
+            cell: index of the cell.
+            port: name of the port.
+        """
         return self.cells[cell].x + self.cells[cell].offsets.get(port, 0)
 
 
 def plan(projection: Projection, branches: frozenset[str]) -> Plan:
-    """Lay out a projection; `branches` are the names of the edges in its tree, if there is one."""
+    """Lay out a graph.
+
+    Args:
+        projection: the graph of one subspace.
+        branches: names of the branches; empty if no tree is chosen.
+    """
     found = Plan()
     _gather(found, projection, branches)
     outer = [e for e in projection.edges if not (is_arm(e) or _inside(found, e))]
@@ -106,7 +123,7 @@ def plan(projection: Projection, branches: frozenset[str]) -> Plan:
 
 
 def _gather(found: Plan, projection: Projection, branches: frozenset[str]) -> None:
-    """Bodies, their frames, and what each vertex belongs to."""
+    """Find bodies, their frames, and the body that each vertex belongs to."""
     for edge in projection.edges:
         if is_arm(edge) and edge.component != GROUND:
             body = found.bodies.setdefault(edge.component, BodyArea(edge.component))
@@ -120,7 +137,7 @@ def _gather(found: Plan, projection: Projection, branches: frozenset[str]) -> No
         if is_inertia(edge) and body_of is not None and edge.head == body_of.center:
             body_of.inertia, body_of.bold = edge, edge.name in branches
     for vertex in projection.vertices:
-        # a body's name and a vertex's may be the same; a body's own frame is its vertex
+        # The vertex of a body's own frame has the body's name.
         found.node.setdefault(vertex, vertex)
 
 
@@ -132,7 +149,7 @@ def _inside(found: Plan, edge: Edge) -> bool:
 def _set_layers(
     found: Plan, projection: Projection, outer: list[Edge], branches: frozenset[str]
 ) -> None:
-    """How many branches each body or vertex is from ground; by any edge where no branch leads."""
+    """Number of branches between each body or vertex and ground; by any edges where no branch leads there."""
     layer = dict.fromkeys([GROUND] * (GROUND in projection.vertices), 0)
     layer |= {edge.head: 0 for edge in found.arms}
     tree = [edge for edge in outer if edge.name in branches]
@@ -160,7 +177,7 @@ def _spread(found: Plan, layer: dict[str, int], edges: Iterable[Edge]) -> None:
 
 
 def _visited(found: Plan, starts: list[str], edges: Iterable[Edge]) -> list[str]:
-    """Depth first, so that in each layer what hangs on one thing stands together."""
+    """Bodies and vertices depth first, so that those on one branch are adjacent in their layer."""
     near = _neighbours(found, edges)
     seen: dict[str, None] = {}
     for start in starts:
@@ -183,7 +200,7 @@ def _neighbours(found: Plan, edges: Iterable[Edge]) -> dict[str, list[str]]:
 
 
 class _Making:
-    """The cells and links of a plan while they are made."""
+    """The cells and links of a layout during its construction."""
 
     def __init__(self, found: Plan, branches: frozenset[str]) -> None:
         self.found, self.branches = found, branches
@@ -193,12 +210,12 @@ class _Making:
         self.arches: dict[tuple[str, str], int] = {}
 
     def add(self, cell: Cell, *key: int) -> int:
-        """A cell, at a place in the order of the walk."""
+        """Add a cell with its key in the order of the walk."""
         self.made.append((key, cell))
         return len(self.made) - 1
 
     def nodes(self) -> None:
-        """A cell for each body and each vertex outside bodies."""
+        """Add a cell for each body and each vertex outside bodies."""
         found = self.found
         for name, layer in found.layer.items():
             if name != GROUND:
@@ -211,7 +228,7 @@ class _Making:
                 found.cell[name] = self.add(Cell(2 * layer, ports), self.place[name], 0, 0)
 
     def route(self, k: int, edge: Edge) -> None:
-        """The cells of an edge."""
+        """Add the cells and links of an edge."""
         node, layer = self.found.node, self.found.layer
         upward = layer[node[edge.tail]] <= layer[node[edge.head]]
         low, high = (edge.tail, edge.head) if upward else (edge.head, edge.tail)
@@ -234,10 +251,11 @@ class _Making:
         _note_ends(self.found, low, high, arch=False)
 
     def _arch(self, k: int, edge: Edge, key: int) -> None:
-        """Parallel edges share a cell, one arch above the other."""
+        """Add an edge within a layer; parallel edges share a cell, one arch above the other."""
         node, layer = self.found.node, self.found.layer
         low, high = sorted((edge.tail, edge.head))
         ends = (low, high)
+        # Arches to ground have separate ends on the rail and share nothing.
         if GROUND in ends or ends not in self.arches:
             band = 2 * layer[node[low]] + 1
             cell = self.arches[ends] = self.add(Cell(band, ["low", "high"]), key, 1, k)
@@ -252,14 +270,14 @@ class _Making:
         _note_ends(self.found, low, high, arch=True)
 
     def _end(self, vertex: str, key: int, k: int) -> tuple[int, str]:
-        """Where an edge ends; at ground, anywhere on the rail."""
+        """The end of an edge; at ground a new place on the rail."""
         if vertex == GROUND:
             return self.add(Cell(0, [""], LANE, LANE), key, -1, k), ""
         return self.found.cell[self.found.node[vertex]], vertex
 
 
 def _cells(found: Plan, outer: list[Edge], branches: frozenset[str]) -> list[BandLink]:
-    """A cell for each body, vertex and lane, in the order of the walk, and the links between them."""
+    """Create a cell for each body, vertex and lane, and return the links between them."""
     making = _Making(found, branches)
     making.nodes()
     for k, edge in enumerate(outer):
@@ -270,7 +288,7 @@ def _cells(found: Plan, outer: list[Edge], branches: frozenset[str]) -> list[Ban
 def _sorted_cells(
     found: Plan, made: list[tuple[tuple[int, ...], Cell]], links: list[BandLink]
 ) -> list[BandLink]:
-    """Bring the cells into the order of the walk, which has few crossings from the start."""
+    """Sort the cells in the order of the walk, which starts the ordering with few crossings."""
     order = sorted(range(len(made)), key=lambda k: made[k][0])
     new = {old: k for k, old in enumerate(order)}
     found.cells = [made[old][1] for old in order]
@@ -282,7 +300,7 @@ def _sorted_cells(
 
 
 def _note_ends(found: Plan, low: str, high: str, *, arch: bool) -> None:
-    """Tell bodies on which side their vertices have edges."""
+    """Count the edges of bodies' vertices on their upper and lower sides."""
     for vertex, above in ((low, True), (high, arch)):
         body = found.bodies.get(found.node[vertex])
         if body is not None:
@@ -291,7 +309,7 @@ def _note_ends(found: Plan, low: str, high: str, *, arch: bool) -> None:
 
 
 def label_of(edge: Edge) -> str:
-    """What an edge is called in the picture."""
+    """The label of an edge in the picture."""
     return short(edge.name)
 
 
@@ -301,7 +319,7 @@ def _lane(edge: Edge | None, band: int) -> Cell:
 
 
 def _measure(found: Plan) -> None:
-    """Sizes of bodies and vertices, once their ports are in order; which end of an arch is left."""
+    """Set sizes of bodies and vertices, once their ports are in order."""
     for name, k in found.cell.items():
         cell = found.cells[k]
         if name in found.bodies:
@@ -318,7 +336,7 @@ def _measure(found: Plan) -> None:
 
 
 def _measure_arch(found: Plan, k: int) -> None:
-    """The width of a pile of arches, which is that of its labels; its ends stand as far apart."""
+    """Set the width of a stack of arches from its labels, and the distance of its ends."""
     cell = found.cells[k]
     routes = [route for route in found.routes if route.cells[1][0] == k and route.arch >= 0]
     inner = max(width(label_of(route.edge), NORMAL) for route in routes) // 2 + 3
@@ -335,7 +353,7 @@ def _measure_arch(found: Plan, k: int) -> None:
 
 
 def _set_heights(found: Plan, links: list[BandLink]) -> None:
-    """Heights of bands and of the zones between them, which are higher where lines bend far."""
+    """Set heights of bands and of the zones between them, larger where lines bend far."""
     count = 1 + max((cell.band for cell in found.cells), default=0)
     heights = [LABEL_BAND if band % 2 else 0 for band in range(count)]
     for name, k in found.cell.items():

@@ -1,4 +1,4 @@
-"""What the lines and signs of a picture mean."""
+"""The legend of a picture of a graph."""
 
 from __future__ import annotations
 
@@ -28,7 +28,12 @@ SAMPLE, LINE, APART = 50, 16, 18
 
 
 def edge_entries(kinds: Sequence[tuple[str, bool]], treed: bool) -> list[Entry]:
-    """Samples of the kinds of edges that occur, each a branch or not."""
+    """Samples of the kinds of edges in a picture.
+
+    Args:
+        kinds: each kind that occurs, and whether as a branch.
+        treed: whether a tree is shown.
+    """
     if not treed:
         return [(_sample(PLAIN, False), "edge")]
     entries = [
@@ -40,7 +45,7 @@ def edge_entries(kinds: Sequence[tuple[str, bool]], treed: bool) -> list[Entry]:
 
 
 def body_entries() -> list[Entry]:
-    """Samples of what stands inside a body."""
+    """Samples of the symbols inside a body."""
     pen = CHORD_PEN
     inertia = (line((36, 0), (10, 0), pen=pen), arrow_head((9, 0), (-1, 0), pen.color))
     return [
@@ -60,7 +65,15 @@ def _sample(kind: str, bold: bool) -> tuple[Item, ...]:
 
 
 def legend(entries: Sequence[Entry], widest: int) -> tuple[tuple[Item, ...], int, int]:
-    """Entries in columns that fit in a width; with the width and height they take."""
+    """Arrange entries in columns.
+
+    Args:
+        entries: samples with their meanings.
+        widest: largest width.
+
+    Returns:
+        The items, their width and their height.
+    """
     column = SAMPLE + APART + max(width(text, SMALL) for _, text in entries)
     columns = max(1, min(len(entries), (widest + APART) // column))
     rows = -(-len(entries) // columns)

@@ -1,7 +1,7 @@
-"""How wide text is, and what of a name can be drawn.
+"""Widths of text, and names shortened and cleaned for drawing.
 
-Pictures are laid out without asking for a font, so that they are the same on every machine: widths are
-those of DejaVu Sans, wider than most sans-serif fonts, in hundredths of the size.
+Pictures are laid out without loading a font, so that they are the same on every machine. Widths are those
+of DejaVu Sans, wider than most sans-serif fonts, in hundredths of the size.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import unicodedata
 
 LONGEST = 36
-"""A longer name is drawn with its middle left out; the whole name stands in the element's title."""
+"""Longer names are drawn with their middle left out; the title of the element has the whole name."""
 
 _WIDTHS = {
     28: "'ijl",
@@ -45,7 +45,12 @@ _OTHER, _WIDE, _BOLDER = 88, 105, 13
 
 
 def width(text: str, size: int, *, bold: bool = False) -> int:
-    """A width that the text does not exceed, in whole units.
+    """Upper bound on the width of a text, in whole units.
+
+    Args:
+        text: the text.
+        size: its size.
+        bold: whether it is bold.
 
     Example:
         >>> width("shoulder", 12), width("", 12)
@@ -56,7 +61,7 @@ def width(text: str, size: int, *, bold: bool = False) -> int:
 
 
 def is_common(text: str) -> bool:
-    """Whether every letter's width is known; of others fonts differ."""
+    """Whether the widths of all letters are known; others depend on the font."""
     return all(letter in _WIDTH or letter in "#+<=>^~…" for letter in text)
 
 
@@ -71,7 +76,7 @@ def _letter_width(letter: str) -> int:
 
 
 def clean(text: str) -> str:
-    r"""The text on one line, with characters that cannot be drawn, or turn the line round, replaced.
+    r"""Put text on one line and replace characters that cannot be drawn or change its direction.
 
     Example:
         >>> clean("a\nb\x00")
@@ -88,7 +93,11 @@ def _drawable(letter: str) -> str:
 
 
 def short(text: str, longest: int = LONGEST) -> str:
-    """A clean text of no more than `longest` letters, the middle left out.
+    """Clean a text and leave out its middle if it is too long.
+
+    Args:
+        text: the text.
+        longest: largest number of letters.
 
     Example:
         >>> short("abcdefghij", 7)

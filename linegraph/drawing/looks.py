@@ -1,4 +1,4 @@
-"""What kinds of edges there are and how each is drawn."""
+"""Kinds of edges and their line styles."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ DASHES: Mapping[str, tuple[float, ...]] = {
     LIMIT: (10, 3, 2, 3),
     PORT: (2, 2.5),
 }
-"""Kinds of edges by how their lines are broken."""
+"""Dashes of the lines of each kind of edge."""
 
 
 def kinds_of(model: System) -> dict[str, str]:
-    """The kind of each component of 3-D mechanics that is no joint, by its name."""
+    """Kind of each component of spatial mechanics that is no joint, by name."""
     kinds = {e.name: PORT if isinstance(e, NetworkForce) else ELEMENT for e in model.elements}
     return kinds | {limit.name: LIMIT for limit in model.constraints}
 
@@ -43,6 +43,11 @@ def is_inertia(edge: Edge) -> bool:
 
 
 def pen_of(kind: str, bold: bool) -> Pen:
-    """Branches bold, chords thin, the line broken by kind."""
+    """The line style of an edge: branches bold, chords thin, dashes by kind.
+
+    Args:
+        kind: a key of `DASHES`.
+        bold: whether the edge is a branch.
+    """
     pen = BRANCH_PEN if bold else CHORD_PEN
     return Pen(pen.color, pen.width, DASHES[kind])

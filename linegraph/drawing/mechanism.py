@@ -1,4 +1,4 @@
-"""The sketch of a mechanism: links between joints, signs of joints, axes, mass centres, ground."""
+"""The sketch of a mechanism: links, symbols of joints, axes, mass centres, ground."""
 
 from __future__ import annotations
 
@@ -49,10 +49,10 @@ if TYPE_CHECKING:
 SIGN, SIGN_HIGH = 56, 24
 LONG_SIGNS = ("revolute", "prismatic", "cylindrical", "helical", "compound", "planar")
 MOST_LISTED = 9
-"""Names in a list below the sketch; all of them stand in its title."""
+"""Largest number of names in a list below the sketch; its title has all."""
 
 HOLDING = ("spring", "damper", "rod", "stop", "law", "friction", "edge")
-"""Ties that hold on to ground where they end there."""
+"""Ties that need a ground symbol where they end at ground."""
 
 LINK_PEN, LINK_FILL = Pen("#6b7f96", 1.2), "#dde6f0"
 
@@ -62,12 +62,12 @@ def mechanism_scene(
     q: Sequence[float] | None = None,
     hold: Mapping[str, float] | None = None,
 ) -> Scene:
-    """A sketch of the mechanism at a configuration.
+    """Sketch the mechanism at a configuration.
 
     Args:
         derivation: a derived model with bodies.
-        q: the coordinates; those that close all loops, from the start values on, if left out.
-        hold: coordinates that keep the value given while the loops are closed, by name.
+        q: coordinates (rad, m); if left out, those found from the start values that close all loops.
+        hold: values of coordinates, by name, that are kept while the loops are closed.
 
     Raises:
         ModelError: a parameter has no value, or there are no bodies.
@@ -79,21 +79,26 @@ def mechanism_scene(
 
 
 def mechanism_svg(derivation: Derived, q: Sequence[float] | None = None) -> str:
-    """The sketch of `mechanism_scene` at coordinates q, as the text of an SVG file."""
+    """Sketch the mechanism as the text of an SVG file.
+
+    Args:
+        derivation: a derived model with bodies.
+        q: coordinates, as for `mechanism_scene`.
+    """
     return svg_text(mechanism_scene(derivation, q))
 
 
 class Sketch(Stand):
-    """A mechanism drawn.
+    """The drawing of a mechanism.
 
     Attributes:
-        items: from the upper left corner.
-        width, height: what they take.
-        about: it in words.
+        items: the items, from the upper left corner.
+        width, height: their size.
+        about: description in words.
     """
 
     def __init__(self, found: Poses) -> None:
-        """Project and draw."""
+        """Project the poses and draw them."""
         super().__init__(found)
         self.middles: dict[str, Point] = {}
         items: list[Item] = [Text(0, 13, "mechanism", LARGE, bold=True)]
@@ -138,7 +143,7 @@ class Sketch(Stand):
         return items
 
     def _grounds(self) -> list[Item]:
-        """A support wherever something is connected with ground."""
+        """Ground symbols wherever something is connected to ground."""
         items: list[Item] = []
         base = self.poses.links[GROUND_LINK]
         bodies = self._base(base) if base else []
@@ -157,7 +162,7 @@ class Sketch(Stand):
         return [*bodies, *ground]
 
     def _base(self, bodies: Sequence[str]) -> list[Item]:
-        """Bodies that are welded to ground: supported at their frame."""
+        """Bodies welded to ground, with a ground symbol at their frame."""
         foot = self.seen(self.poses.origins[bodies[0]])
         shape: list[Item] = []
         for point in self.points[GROUND_LINK]:
@@ -168,7 +173,7 @@ class Sketch(Stand):
         return [body, Part("ground", "ground", tuple(self._ground(foot, True)), "the reference")]
 
     def _support(self, place: JointPose) -> list[Item]:
-        """Ground at a joint, on the side where its link is not."""
+        """A ground symbol at a joint, on the side away from its link."""
         (x, y), axis = self.at[place.joint.name], self.along(place.axis)
         length = sqrt(axis[0] * axis[0] + axis[1] * axis[1])
         if place.joint.kind == "prismatic" and length >= END_ON:
@@ -213,7 +218,7 @@ class Sketch(Stand):
 
     def _joints(self) -> list[Item]:
         items: list[Item] = []
-        # a carriage stands behind what is joined to it
+        # A carriage is drawn first, so that the joints on it stay visible.
         for place in sorted(self.poses.joints, key=lambda place: not self.is_carriage(place)):
             at, axis = self.at[place.joint.name], self.along(place.axis)
             guide: list[Item] = []
@@ -291,7 +296,7 @@ class Sketch(Stand):
         return items
 
     def _key(self) -> list[Item]:
-        """Below the sketch: what is welded together, and what sits in joints."""
+        """Lists below the sketch: bodies welded together, and elements in joints."""
         lists: list[tuple[str, list[str]]] = []
         for link, bodies in self.poses.links.items():
             if link == GROUND_LINK and bodies:
@@ -319,7 +324,7 @@ class Sketch(Stand):
         return items + self._signs([kind for kind, large in signs if not large])
 
     def _signs(self, kinds: Sequence[str]) -> list[Item]:
-        """What the signs of joints mean, each as it mostly stands in the picture."""
+        """The legend of joints' symbols, each as it mostly appears in the picture."""
         items: list[Item] = []
         x = 0
         for kind in kinds:
@@ -338,7 +343,7 @@ class Sketch(Stand):
 
 
 def _shifted(point: Point, a: Point, b: Point, beside: float) -> Point:
-    """A point moved across the line from a to b."""
+    """Move a point perpendicular to the line from a to b."""
     dx, dy = b[0] - a[0], b[1] - a[1]
     length = sqrt(dx * dx + dy * dy) or 1.0
     return (tenth(point[0] - dy / length * beside), tenth(point[1] + dx / length * beside))
@@ -349,7 +354,7 @@ def _in_words(tie: TiePose) -> str:
 
 
 def _load(at: Point) -> list[Item]:
-    """An arrow at the point that a load acts on."""
+    """An arrow at the point where a load acts."""
     x, y = at
     pen = Pen(ACCENT, 2)
     return [
@@ -359,7 +364,7 @@ def _load(at: Point) -> list[Item]:
 
 
 def _wrapped(head: str, names: Iterable[str], widest: int) -> list[str]:
-    """Names in lines of no more than a width, as far as names allow."""
+    """Break names into lines of a given width, as far as their lengths allow."""
     lines, now = [], clean(head)
     for k, name in enumerate(names):
         word = clean(name)

@@ -1,4 +1,4 @@
-"""Outlines of points in the picture."""
+"""Outlines of sets of points in the picture."""
 
 from __future__ import annotations
 
@@ -10,15 +10,16 @@ if TYPE_CHECKING:
     from linegraph.drawing.scene import Point
 
 SLENDER = 60
-"""Twice the area of a triangle that counts as a line."""
+"""A triangle of at most half this area counts as a line."""
 
 
 def hull_of(points: Sequence[Point]) -> list[Point]:
-    """The corners of the smallest convex outline, or the two ends where all are in a line."""
+    """Corners of the convex hull of points; the two ends if all are on a line."""
     ordered = sorted(set(points))
     if len(ordered) < 3:
         return ordered
 
+    # Andrew's monotone chain: the upper and the lower half of the hull from points sorted by x.
     def half(row: Iterable[Point]) -> list[Point]:
         kept: list[Point] = []
         for p in row:
@@ -36,7 +37,12 @@ def _turn(a: Point, b: Point, c: Point) -> float:
 
 
 def inside(p: Point, hull: Sequence[Point]) -> bool:
-    """Whether a point is within an outline, or within a bar's width of its line."""
+    """Whether a point is inside an outline, or closer than a bar's width if that is a line.
+
+    Args:
+        p: the point.
+        hull: corners of a convex outline, or two ends of a line.
+    """
     if len(hull) > 2:
         return all(
             _turn(a, b, p) >= -SLENDER for a, b in zip(hull, [*hull[1:], hull[0]], strict=True)
@@ -49,10 +55,23 @@ def inside(p: Point, hull: Sequence[Point]) -> bool:
 
 
 def distance2(a: Point, b: Point) -> float:
-    """The square of a distance."""
+    """The squared distance of two points.
+
+    Args:
+        a: the first point.
+        b: the second point.
+    """
     return (a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2
 
 
 def far(a: Point, b: Point, limit: float) -> bool:
-    """Whether two points are apart by a distance, far from rounding's border."""
+    """Whether two points are farther apart than a limit; a distance equal to it does not count.
+
+    The margin makes the result independent of rounding where distances equal the limit.
+
+    Args:
+        a: the first point.
+        b: the second point.
+        limit: the distance.
+    """
     return distance2(a, b) > limit * limit + 1e-6

@@ -1,4 +1,4 @@
-"""The picture of one projection, drawn from its plan."""
+"""The picture of one subspace's graph, drawn from its layout."""
 
 from __future__ import annotations
 
@@ -33,24 +33,32 @@ if TYPE_CHECKING:
     from linegraph.graph.multigraph import Projection
 
 TITLE, BELOW = 30, 30
-"""Space above a panel for its title, and below the rail for what stands there."""
+"""Space above a panel for its title, and below the rail for names of frames."""
 
 RAIL = Pen(INK, 4)
 
 
 class Panel:
-    """One projection drawn.
+    """The drawing of one graph.
 
     Attributes:
-        items: from the upper left corner.
-        width, height: what they take.
-        kinds: the kinds of edges that are in it.
+        items: the items, from the upper left corner.
+        width, height: their size.
+        kinds: kinds of edges that occur, and whether as branches.
+        about: description in words.
     """
 
     def __init__(
         self, title: str, projection: Projection, branches: frozenset[str], kinds: Mapping[str, str]
     ) -> None:
-        """Lay out and draw."""
+        """Lay out and draw a graph.
+
+        Args:
+            title: the subspaces it is drawn for.
+            projection: the graph.
+            branches: names of the branches; empty if no tree is chosen.
+            kinds: kinds of components of spatial mechanics, by name.
+        """
         self.plan = plan(projection, branches)
         self.branches, self.by_component = branches, kinds
         self.kinds: dict[tuple[str, bool], None] = {}
@@ -74,7 +82,7 @@ class Panel:
         self.about = f"{title}: {vertices} vertices, {count} edges"
 
     def _at(self, x: float, up: float) -> Point:
-        """From the plan to the panel."""
+        """Convert coordinates of the layout to those of the panel."""
         return (self.margin + x, TITLE + self.plan.height - up)
 
     def _rail(self) -> list[Item]:
@@ -110,7 +118,7 @@ class Panel:
         return under, above
 
     def _corner(self, name: str) -> tuple[float, float]:
-        """The upper left corner of a body's region, which stands in the middle of its band."""
+        """Upper left corner of a body's region, which is centred in its band."""
         cell = self.plan.cells[self.plan.cell[name]]
         middle = self.plan.floors[cell.band] + self.plan.ceilings[cell.band]
         return cell.x, middle / 2 + HEIGHT / 2
@@ -128,7 +136,7 @@ class Panel:
         return items
 
     def _place(self, k: int, vertex: str) -> tuple[float, float]:
-        """Where a vertex is in the plan."""
+        """Position of a vertex in the layout."""
         cell = self.plan.cells[k]
         node = self.plan.node.get(vertex, "")
         if node in self.plan.bodies:
@@ -165,7 +173,7 @@ class Panel:
     def _lane(
         self, route: Route
     ) -> tuple[list[list[Point]], tuple[Point, Point], tuple[Point, str]]:
-        """Straight up in each band, bent in the zones between; the arrow and the label at its lane."""
+        """An edge between layers: straight in each band, bent in the zones between them."""
         low, high = route.cells[0], route.cells[-1]
         start = self._end(low)
         first = self._exit(route, low, True)
@@ -189,7 +197,7 @@ class Panel:
     def _arch(
         self, route: Route
     ) -> tuple[list[list[Point]], tuple[Point, Point], tuple[Point, str]]:
-        """Up from one end, along under the label, down to the other."""
+        """An edge within a layer: up from one end, along below its label, down to the other."""
         k = route.cells[1][0]
         cell, floor = self.plan.cells[k], self.plan.floors[self.plan.cells[k].band]
         level = floor + RISE + ARCH * route.arch
@@ -216,7 +224,7 @@ class Panel:
         return steps, head, ((cell.x, level + 6), "middle")
 
     def _exit(self, route: Route, end: tuple[int, str], upward: bool) -> float:
-        """Where an edge leaves the band of its end: edges of a vertex inside a body do so side by side."""
+        """Position where an edge leaves the band of its end; edges of a vertex inside a body are spread."""
         x, _ = self._end(end)
         fan = self.fans.get((end[1], upward), [])
         node = self.plan.node.get(end[1], "")
@@ -227,7 +235,7 @@ class Panel:
         return x + FAN * (fan.index(route.edge.name) - (len(fan) - 1) / 2)
 
     def _end(self, end: tuple[int, str]) -> Point:
-        """Where an edge ends: at a vertex, or anywhere on the rail."""
+        """End of an edge: a vertex, or a place on the rail."""
         return self._place(*end) if end[1] else (self.plan.cells[end[0]].x, 0)
 
 
@@ -247,7 +255,7 @@ def _fans(plan: Plan) -> dict[tuple[str, bool], list[str]]:
 
 
 def _bend(a: Point, b: Point) -> list[Point]:
-    """From one height to another, upright at both ends."""
+    """A curve between two heights, vertical at both ends."""
     if a[0] == b[0]:
         return [b]
     rise = 0.55 * (b[1] - a[1])

@@ -1,4 +1,4 @@
-"""What is drawn of a derivation, a topology, a projection."""
+"""Pictures of derivations, trees and graphs."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ if TYPE_CHECKING:
 
 MARGIN, APART, LEAST_LEGEND = 16, 28, 420
 WIDEST = 1100
-"""Panels stand side by side up to this width."""
+"""Largest width of panels next to each other."""
 
 LONGEST_REMARK = 120
 
 
 def graph_scene(derivation: Derived, subspace: str | Iterable[str] | None = None) -> Scene:
-    """The system graph: a panel for each subspace, branches bold.
+    """Draw the system graph: a panel for each subspace, branches bold.
 
     Args:
         derivation: a derived model.
-        subspace: the subspaces to draw, by name; all if left out.
+        subspace: names of the subspaces to draw; all if left out.
 
     Raises:
         ModelError: there is no such subspace.
@@ -49,13 +49,13 @@ def whole_scene(
     q: Sequence[float] | None = None,
     hold: Mapping[str, float] | None = None,
 ) -> Scene:
-    """The graph, and beside it the mechanism; where that cannot be sketched, a remark says why.
+    """Draw the graph with the mechanism next to it, or a remark if that cannot be sketched.
 
     Args:
         derivation: a derived model.
-        subspace: the subspaces to draw, by name; all if left out.
-        q: the coordinates of the sketch, as of `mechanism_scene`.
-        hold: coordinates of the sketch that keep the value given, by name.
+        subspace: names of the subspaces to draw; all if left out.
+        q: coordinates of the sketch, as for `mechanism_scene`.
+        hold: values of coordinates of the sketch, by name.
 
     Raises:
         ModelError: there is no such subspace.
@@ -74,7 +74,12 @@ def whole_scene(
 
 
 def whole_svg(derivation: Derived, subspace: str | Iterable[str] | None = None) -> str:
-    """Graph and mechanism side by side (`whole_scene`), as the text of an SVG file."""
+    """Draw graph and mechanism (`whole_scene`) as the text of an SVG file.
+
+    Args:
+        derivation: a derived model.
+        subspace: names of the subspaces to draw; all if left out.
+    """
     return svg_text(whole_scene(derivation, subspace))
 
 
@@ -88,24 +93,29 @@ def _panels(derivation: Derived, subspace: str | Iterable[str] | None) -> list[P
 
 
 def graph_svg(derivation: Derived, subspace: str | Iterable[str] | None = None) -> str:
-    """The graph of the chosen subspaces (`graph_scene`), as the text of an SVG file."""
+    """Draw the graph of some subspaces (`graph_scene`) as the text of an SVG file.
+
+    Args:
+        derivation: a derived model.
+        subspace: names of the subspaces to draw; all if left out.
+    """
     return svg_text(graph_scene(derivation, subspace))
 
 
 def topology_svg(topology: Topology) -> str:
-    """One projection with its tree, as SVG."""
+    """Draw the graph of one subspace with its tree as the text of an SVG file."""
     branches = frozenset(edge.name for edge in topology.branches)
     panel = Panel(topology.projection.domain, topology.projection, branches, {})
     return svg_text(composed(f"Linear graph in {topology.projection.domain}", [panel]))
 
 
 def projection_svg(projection: Projection) -> str:
-    """One projection as SVG, no tree chosen yet."""
+    """Draw the graph of one subspace without a tree as the text of an SVG file."""
     return system_svg([projection])
 
 
 def system_svg(projections: Sequence[Projection]) -> str:
-    """Several projections as SVG, no tree chosen yet."""
+    """Draw the graphs of several subspaces without trees as the text of an SVG file."""
     panels = []
     done: list[Projection] = []
     for projection in projections:
@@ -122,7 +132,13 @@ def system_svg(projections: Sequence[Projection]) -> str:
 def chosen_panels(
     derivation: Derived, subspace: str | Iterable[str] | None = None
 ) -> list[tuple[list[str], Topology]]:
-    """The trees to show, each with the subspaces it is for: translation and rotation mostly share one.
+    """The trees to draw, each with the subspaces it is for.
+
+    Translation and rotation mostly have the same graph and tree, which are drawn once.
+
+    Args:
+        derivation: a derived model.
+        subspace: names of the subspaces to draw; all if left out.
 
     Raises:
         ModelError: there is no such subspace.
@@ -134,7 +150,7 @@ def chosen_panels(
 
 
 def topologies(derivation: Derived) -> list[Topology]:
-    """The chosen tree of every subspace that has edges, in the order of the graph."""
+    """The chosen trees of all subspaces with edges, in the order of the graph."""
     formulation = derivation.formulation
     found = {t.projection.domain: t for t in (formulation.translation, formulation.rotation)}
     if formulation.network is not None:
@@ -147,7 +163,7 @@ def _shape(projection: Projection) -> tuple[object, ...]:
 
 
 def _distinct(found: Sequence[Topology]) -> list[tuple[list[str], Topology]]:
-    """Translation and rotation are one picture where edges and tree are the same."""
+    """Trees with their subspaces; translation and rotation are merged where graph and tree are equal."""
     pairs: list[tuple[list[str], Topology]] = []
     for topology in found:
         domain = topology.projection.domain
@@ -160,14 +176,14 @@ def _distinct(found: Sequence[Topology]) -> list[tuple[list[str], Topology]]:
 
 
 def _same(a: Topology, b: Topology) -> bool:
-    """Whether edges and tree are the same in both."""
+    """Whether graph and tree are the same in both."""
     if a.projection.domain not in SPATIAL or _shape(a.projection) != _shape(b.projection):
         return False
     return [e.name for e in a.branches] == [e.name for e in b.branches]
 
 
 def _wanted(derivation: Derived, subspace: str | Iterable[str] | None) -> Sequence[str]:
-    """The subspaces asked for.
+    """Names of the requested subspaces.
 
     Raises:
         ModelError: one of them is not in the model.
@@ -187,7 +203,14 @@ def _wanted(derivation: Derived, subspace: str | Iterable[str] | None) -> Sequen
 def composed(
     title: str, panels: Sequence[Panel], sketch: Sketch | None = None, remark: str = ""
 ) -> Scene:
-    """Panels in rows, and below them what the lines mean."""
+    """Arrange panels in rows, with a legend below.
+
+    Args:
+        title: title of the picture.
+        panels: the panels.
+        sketch: the sketch of the mechanism, placed after the first panel.
+        remark: text below the legend.
+    """
     kinds = dict.fromkeys(kind for panel in panels for kind in panel.kinds)
     entries = edge_entries(list(kinds), any(panel.branches for panel in panels))
     if any(panel.bodies for panel in panels):
@@ -214,12 +237,20 @@ Block = tuple["tuple[Item, ...]", int, int]
 
 
 def rows(blocks: Sequence[Block], widest: int) -> tuple[list[Item], int, int]:
-    """Blocks in rows of columns, low ones above each other; with the width and height they take."""
+    """Arrange blocks in rows of columns, low ones above each other.
+
+    Args:
+        blocks: items with their widths and heights.
+        widest: largest width of a row.
+
+    Returns:
+        The items, their width and their height.
+    """
     items: list[Item] = []
     top = bottom = left = edge = y = right = tallest = 0
     for block, wide, high in blocks:
         if items and y + high <= top + tallest * 5 // 4 and left + wide <= widest:
-            pass  # under the last one
+            pass  # below the last one
         elif items and edge + wide <= widest:
             left, y = edge, top
         elif items:

@@ -1,4 +1,4 @@
-"""A scene as PNG, by matplotlib with the fonts it brings along: the same bytes for the same version of it."""
+"""A scene as PNG, by matplotlib with its own fonts: the same bytes for the same version of it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 SCALE, MOST_PIXELS = 2, 12000
-"""Pixels for a unit, and the longest side in pixels: a larger picture has fewer for a unit."""
+"""Pixels per unit, and the longest side in pixels; larger pictures have fewer pixels per unit."""
 
 POINTS = 72
 ANCHORS: dict[str, Literal["left", "center", "right"]] = {
@@ -26,7 +26,7 @@ ANCHORS: dict[str, Literal["left", "center", "right"]] = {
 
 
 def png_bytes(scene: Scene) -> bytes:
-    """The picture as the bytes of a PNG file.
+    """Write a scene as the bytes of a PNG file.
 
     Raises:
         LinegraphError: matplotlib is not installed.
@@ -42,6 +42,7 @@ def png_bytes(scene: Scene) -> bytes:
     scale = min(SCALE, MOST_PIXELS / max(scene.width, scene.height))
     with matplotlib.rc_context(), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # letters that the font does not have
+        # Settings of the user must not change the picture.
         matplotlib.rcdefaults()
         size = (scene.width / POINTS, scene.height / POINTS)
         figure = Figure(figsize=size, dpi=scale * POINTS, facecolor=PAPER)
@@ -54,12 +55,13 @@ def png_bytes(scene: Scene) -> bytes:
             artist.set_zorder(place)
             axes.add_artist(artist)
         file = io.BytesIO()
+        # The version of matplotlib is left out of the file, so that equal pictures have equal bytes.
         canvas.print_png(file, metadata={"Software": None})  # type: ignore[no-untyped-call]
     return file.getvalue()
 
 
 def _fonts(matplotlib: Any) -> dict[tuple[bool, bool], Path]:
-    """The files of DejaVu Sans by bold and slanted."""
+    """Files of DejaVu Sans, by bold and slanted."""
     folder = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
     return {
         (bold, slanted): folder
@@ -70,7 +72,7 @@ def _fonts(matplotlib: Any) -> dict[tuple[bool, bool], Path]:
 
 
 def _artists(scene: Scene, fonts: dict[tuple[bool, bool], Path]) -> Iterator[Any]:
-    """What matplotlib draws, in order."""
+    """The artists of matplotlib, in order of drawing."""
     from matplotlib.font_manager import FontProperties
     from matplotlib.patches import Circle, FancyBboxPatch, PathPatch
     from matplotlib.text import Text as Words
@@ -112,7 +114,7 @@ def _path(item: Stroke) -> Any:
 
 
 def _paint(pen: Pen | None, fill: str) -> dict[str, Any]:
-    """Line and area; a unit of the picture is a point."""
+    """Style of line and area; a unit of the picture is a point."""
     paint: dict[str, Any] = {"facecolor": fill or "none", "edgecolor": "none", "linewidth": 0}
     if pen is not None:
         paint |= {"edgecolor": pen.color, "linewidth": pen.width, "capstyle": "butt"}

@@ -1,4 +1,4 @@
-"""Where everything of a mechanism is at a configuration, in ground axes: what the sketch projects."""
+"""Positions of everything in a mechanism at a configuration, in ground axes, for the sketch."""
 
 from __future__ import annotations
 
@@ -30,12 +30,13 @@ GROUND_LINK = -1
 
 @dataclass(frozen=True)
 class JointPose:
-    """A joint where it stands.
+    """A joint at a configuration, in ground axes.
 
     Attributes:
-        links: of its tail and its head; -1 is ground.
-        tail, head: its frames' origins.
-        axis: the direction it is about, along or normal to.
+        joint: the joint.
+        links: indices of the links of tail and head; -1 for ground.
+        tail, head: origins of its frames (m).
+        axis: unit vector of its axis, or of the normal of its plane.
     """
 
     joint: Joint
@@ -47,13 +48,14 @@ class JointPose:
 
 @dataclass(frozen=True)
 class TiePose:
-    """A force element, a constraint or a load where it stands.
+    """A force element, constraint or load at a configuration, in ground axes.
 
     Attributes:
-        kind: what it is.
-        links: of its ends.
-        tail, head: its ends; the same where it sits in a joint.
-        joint: the joint it sits in.
+        name: its name.
+        kind: its type.
+        links: indices of the links of its ends; -1 for ground.
+        tail, head: its ends (m); the joint's frames for an element in a joint.
+        joint: name of the joint it acts in; empty if none.
     """
 
     name: str
@@ -66,16 +68,16 @@ class TiePose:
 
 @dataclass
 class Poses:
-    """A mechanism at a configuration.
+    """A mechanism at a configuration, in ground axes.
 
     Attributes:
         links: the bodies of each link, welded together; those of ground at -1.
-        origins: of the bodies' own frames.
-        centers: the mass centre of each moving link with mass.
-        joints: those that are not fixed.
-        welds: the names of those that are.
-        ties: what else acts or constrains.
-        upward: against gravity, length 1; None without gravity.
+        origins: origins of the bodies' own frames (m).
+        centers: mass centre of each moving link with mass (m).
+        joints: joints that are not fixed.
+        welds: names of fixed joints.
+        ties: force elements, constraints and loads.
+        upward: unit vector against gravity; None without gravity.
     """
 
     links: dict[int, list[str]] = field(default_factory=dict)
@@ -92,15 +94,15 @@ def poses(
     q: Sequence[float] | None = None,
     hold: Mapping[str, float] | None = None,
 ) -> Poses:
-    """Every body and joint at a configuration.
+    """Positions of all bodies and joints at a configuration.
 
     Args:
         derivation: a derived model with bodies.
-        q: the coordinates; those that close all loops, from the start values on, if left out.
-        hold: coordinates that keep the value given while the loops are closed, by name.
+        q: coordinates (rad, m); if left out, those found from the start values that close all loops.
+        hold: values of coordinates, by name, that are kept while the loops are closed.
 
     Raises:
-        ModelError: a parameter has no value, there is no body, or `q` has another length.
+        ModelError: a parameter has no value, there is no body, or `q` has the wrong length.
     """
     model = derivation.system
     if not model.bodies:
@@ -159,7 +161,7 @@ def _gathered(derivation: Derived, numeric: Numeric, q: Sequence[float]) -> Pose
 def _ties(
     derivation: Derived, numeric: Numeric, chords: Chords, joints: Mapping[str, JointPose]
 ) -> list[TiePose]:
-    """Force elements, constraints and loads."""
+    """Positions of force elements, constraints and loads."""
     model = derivation.system
     terminals = terminals_of(model)
     ties = []

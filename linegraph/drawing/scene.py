@@ -1,7 +1,7 @@
-"""What a picture consists of: lines, curves, discs, regions and text on a canvas. x right, y down.
+"""Elements of pictures: lines, curves, discs, regions and text on a canvas, x to the right, y down.
 
-A scene says nothing of files; `svg` and `png` write it. Items are grouped into parts that say what they
-show, so that a reader, a screen reader or a test finds a branch among lines.
+A scene is independent of file formats; `svg`, `png` and `latex` write it. Items are grouped into parts that
+name the thing they show, so that a screen reader or a test finds a branch among lines.
 """
 
 from __future__ import annotations
@@ -19,15 +19,21 @@ Point = tuple[float, float]
 
 INK, GREY, FAINT, PAPER = "#1b1b1b", "#5c5c5c", "#9a9a9a", "#ffffff"
 BRANCH, ACCENT, TINT, EDGE_OF_TINT = "#0a4a8f", "#b3400e", "#eef3f9", "#aebfd2"
-"""Colours that differ in lightness, too: they stay apart in grey print and for the colour-blind."""
+"""Colours that also differ in lightness, for grey print and for the colour-blind."""
 
 SMALL, NORMAL, LARGE = 10, 12, 14
-"""Sizes of text."""
+"""Sizes of text, in units of the canvas."""
 
 
 @dataclass(frozen=True)
 class Pen:
-    """How a line is drawn; no dash is a solid line."""
+    """The style of a line.
+
+    Attributes:
+        color: as ``#rrggbb``.
+        width: in units of the canvas.
+        dash: lengths of dashes and gaps; empty for a solid line.
+    """
 
     color: str = INK
     width: float = 1.2
@@ -36,10 +42,14 @@ class Pen:
 
 @dataclass(frozen=True)
 class Stroke:
-    """Lines and cubic curves end to end: each step is one point, or two controls and a point.
+    """Lines and cubic Bézier curves in sequence.
 
     Attributes:
-        fill: the colour inside; empty for none.
+        start: the first point.
+        steps: one point for a line, or two control points and a point for a curve.
+        pen: style of the line; None for none.
+        closed: whether the last point is joined to the first.
+        fill: colour of the area; empty for none.
     """
 
     start: Point
@@ -51,7 +61,14 @@ class Stroke:
 
 @dataclass(frozen=True)
 class Disc:
-    """A circle."""
+    """A circle with its area.
+
+    Attributes:
+        x, y: its centre.
+        radius: its radius.
+        pen: style of the line; None for none.
+        fill: colour of the area; empty for none.
+    """
 
     x: float
     y: float
@@ -62,7 +79,15 @@ class Disc:
 
 @dataclass(frozen=True)
 class Region:
-    """A rectangle with round corners."""
+    """A rectangle with round corners.
+
+    Attributes:
+        x, y: its upper left corner.
+        width, height: its size.
+        radius: radius of the corners.
+        pen: style of the line; None for none.
+        fill: colour of the area; empty for none.
+    """
 
     x: float
     y: float
@@ -75,7 +100,17 @@ class Region:
 
 @dataclass(frozen=True)
 class Text:
-    """A line of text that stands on y; `anchor` is start, middle or end."""
+    """A line of text.
+
+    Attributes:
+        x: position of its anchor.
+        y: position of its base line.
+        text: the text.
+        size: its size.
+        anchor: ``start``, ``middle`` or ``end``.
+        color: as ``#rrggbb``.
+        bold, slanted: style of the font.
+    """
 
     x: float
     y: float
@@ -88,7 +123,7 @@ class Text:
 
     @property
     def box(self) -> Box:
-        """What it covers at most."""
+        """The area that it covers at most."""
         wide = width(self.text, self.size, bold=self.bold)
         left = self.x - {"start": 0, "middle": wide / 2, "end": wide}[self.anchor]
         return Box(left, self.y - 0.8 * self.size, left + wide, self.y + 0.25 * self.size)
@@ -96,12 +131,13 @@ class Text:
 
 @dataclass(frozen=True)
 class Part:
-    """Items that show one thing.
+    """Items that together show one thing.
 
     Attributes:
-        kind: what the thing is, e.g. ``branch`` or ``body``.
-        name: its whole name.
-        about: more on it, for whoever points at it.
+        kind: its kind, such as ``branch`` or ``body``.
+        name: its full name.
+        items: the items.
+        about: further information, shown when one points at it.
     """
 
     kind: str
@@ -115,7 +151,11 @@ Item = Stroke | Disc | Region | Text | Part
 
 @dataclass(frozen=True)
 class Box:
-    """An upright rectangle."""
+    """A rectangle with sides parallel to the axes; y is down.
+
+    Attributes:
+        left, top, right, bottom: positions of its sides.
+    """
 
     left: float
     top: float
@@ -123,7 +163,12 @@ class Box:
     bottom: float
 
     def meets(self, other: Box, gap: float = 0) -> bool:
-        """Whether they overlap, or are closer than `gap`."""
+        """Whether two rectangles overlap or are too close.
+
+        Args:
+            other: the other rectangle.
+            gap: least distance.
+        """
         return (
             self.left < other.right + gap
             and other.left < self.right + gap
@@ -137,9 +182,10 @@ class Scene(Displayed):
     """A picture.
 
     Attributes:
-        width, height: of the canvas.
-        title: one line that says what it shows.
-        about: what there is to see, for those who cannot.
+        width, height: size of the canvas.
+        title: one line about its content.
+        about: description in words, for readers who cannot see it.
+        items: its content, in order of drawing.
     """
 
     width: int
@@ -149,15 +195,15 @@ class Scene(Displayed):
     items: tuple[Item, ...]
 
     def __repr__(self) -> str:
-        """What it shows, and its size."""
+        """Return its title and size."""
         return f"<picture of {self.width} x {self.height}: {self.title}>"
 
     def parts(self) -> Iterator[Part]:
-        """All parts, outer ones first."""
+        """All parts, outer ones before those inside."""
         yield from _parts(self.items)
 
     def texts(self) -> Iterator[Text]:
-        """All text."""
+        """All texts, in order of drawing."""
         yield from (item for item in flat(self.items) if isinstance(item, Text))
 
 
@@ -169,7 +215,7 @@ def _parts(items: Iterable[Item]) -> Iterator[Part]:
 
 
 def flat(items: Iterable[Item]) -> Iterator[Stroke | Disc | Region | Text]:
-    """The items that are drawn, in order."""
+    """Items without parts around them, in order of drawing."""
     for item in items:
         if isinstance(item, Part):
             yield from flat(item.items)
@@ -178,7 +224,13 @@ def flat(items: Iterable[Item]) -> Iterator[Stroke | Disc | Region | Text]:
 
 
 def moved(items: Iterable[Item], dx: float, dy: float) -> tuple[Item, ...]:
-    """The same items elsewhere."""
+    """Return items at another place.
+
+    Args:
+        items: the items.
+        dx: shift to the right.
+        dy: shift down.
+    """
     return tuple(_moved(item, dx, dy) for item in items)
 
 
@@ -192,17 +244,35 @@ def _moved(item: Item, dx: float, dy: float) -> Item:
 
 
 def line(*points: Point, pen: Pen) -> Stroke:
-    """A line through points."""
+    """A line through points.
+
+    Args:
+        points: at least two points.
+        pen: style of the line.
+    """
     return Stroke(points[0], tuple((point,) for point in points[1:]), pen)
 
 
 def polygon(*points: Point, fill: str, pen: Pen | None = None) -> Stroke:
-    """A closed area."""
+    """A closed polygon.
+
+    Args:
+        points: its corners.
+        fill: colour of the area.
+        pen: style of the line; None for none.
+    """
     return Stroke(points[0], tuple((point,) for point in points[1:]), pen, closed=True, fill=fill)
 
 
 def arrow_head(tip: Point, along: Point, color: str, size: float = 7) -> Stroke:
-    """A solid head whose tip points along a direction of length 1."""
+    """A solid arrow head.
+
+    Args:
+        tip: its tip.
+        along: its direction, of length 1.
+        color: its colour.
+        size: its length.
+    """
     (x, y), (dx, dy) = tip, along
     back, half = (x - size * dx, y - size * dy), 0.42 * size
     return polygon(
@@ -214,5 +284,8 @@ def arrow_head(tip: Point, along: Point, color: str, size: float = 7) -> Stroke:
 
 
 def tenth(x: float) -> float:
-    """Rounded to 0.1, in the same way where a computed value lies on the border but for rounding."""
+    """Round to 0.1, upwards at the border between two tenths.
+
+    The margin makes the result independent of rounding errors for computed values on the border.
+    """
     return int(x * 10 + 0.5001 if x >= 0 else x * 10 - 0.4999) / 10

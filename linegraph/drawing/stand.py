@@ -1,4 +1,4 @@
-"""Where everything of a sketch stands: the view, the scale, joints moved apart, links between joints."""
+"""Positions in the sketch: view, scale, joints moved apart, and links between joints."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from linegraph.spatial.vector import Vector
 
 WIDE, HIGH, BORDER, MOST_BORDER = 340, 270, 95, 170
-"""Room for the mechanism, which grows with the number of its joints, and around it for names."""
+"""Space for the mechanism, which grows with the number of its joints, and around it for names."""
 
 MORE, MOST, LARGER = 14, 300, 1.4
 
@@ -31,22 +31,22 @@ ACTUATED = ("prismatic", "cylindrical", "helical")
 
 SHIFTS = (0, -22, 22, -40, 40, -58, 58)
 CLEAR = 20
-"""A pin may stand anywhere on its axis: how far it is moved along it to be this far from others."""
+"""Least distance between symbols; a pin may be moved along its axis to keep it."""
 
 
 class Stand:
-    """A mechanism as it stands in the picture, not drawn yet.
+    """A mechanism placed in the picture, before drawing.
 
     Attributes:
-        poses, view: what is seen, and from where.
-        width, height: what it takes so far.
-        labels: where names may stand.
-        at: where the sign of each joint is.
-        points: where each link is connected.
+        poses, view: the mechanism and the view.
+        width, height: size so far.
+        labels: areas for names.
+        at: positions of the joints' symbols.
+        points: points where each link is connected.
     """
 
     def __init__(self, found: Poses) -> None:
-        """Project."""
+        """Choose view and scale, and place joints and ties."""
         self.poses = found
         self.view = chosen_view(found)
         self._fit()
@@ -61,7 +61,7 @@ class Stand:
                 self._attach(tie.links[1], self.seen(tie.head))
 
     def _fit(self) -> None:
-        """The scale, and where the origin of ground comes to stand."""
+        """Choose the scale and the position of ground's origin."""
         flat = [self.view.seen(point) for point in self._extent()]
         left, right = min(x for x, _ in flat), max(x for x, _ in flat)
         low, high = min(y for _, y in flat), max(y for _, y in flat)
@@ -73,7 +73,7 @@ class Stand:
         ]
         self.scale = min(spans, default=1.0)
         if min((right - left) * self.scale / WIDE, (high - low) * self.scale / HIGH) < 0.5:
-            self.scale *= LARGER  # a slender one has room to be longer
+            self.scale *= LARGER  # a slender mechanism leaves space
         names = [place.joint.name for place in self.poses.joints] + [*self.poses.origins]
         widest = max(width(short(name, LONGEST_LABEL), NORMAL, bold=True) for name in names)
         beside = min(MOST_BORDER, max(BORDER, widest + 30))
@@ -88,17 +88,17 @@ class Stand:
         yield from list(self.poses.origins.values())[:1]
 
     def seen(self, point: Vector) -> Point:
-        """A point of the mechanism in the picture."""
+        """Position of a point of the mechanism in the picture."""
         x, y = self.view.seen(point)
         return (tenth(self.origin[0] + x * self.scale), tenth(self.origin[1] - y * self.scale))
 
     def along(self, direction: Vector) -> Point:
-        """A direction in the picture, shorter than 1 where it is seen aslant."""
+        """A direction in the picture; shorter than 1 if it is not parallel to the picture."""
         x, y = self.view.seen(direction)
         return (round(x, 9), -round(y, 9))
 
     def _seat(self, place: JointPose) -> None:
-        """Where a joint's sign stands: clear of others where it may be moved along its axis."""
+        """Place a joint's symbol, moved along its axis if others are too close."""
         at = self.seen(place.head)
         axis = self.along(place.axis)
         if place.joint.kind in SHIFTED:
@@ -109,7 +109,7 @@ class Stand:
                     break
         tail = self.seen(place.tail) if place.joint.kind in SLIDES else at
         if place.joint.kind in ACTUATED and GROUND_LINK not in place.links and far(tail, at, 40):
-            # between its ends, where a cylinder and its piston meet
+            # In the middle between its ends, where cylinder and piston meet.
             self._attach(place.links[0], tail)
             self._attach(place.links[1], at)
             at = tail = (tenth((tail[0] + at[0]) / 2), tenth((tail[1] + at[1]) / 2))
@@ -122,7 +122,7 @@ class Stand:
             self.points[link].append(at)
 
     def outline(self, link: int) -> list[Point]:
-        """The points a link is drawn between: where it is connected, and its mass if that is at one place."""
+        """Points that span a link: its connections, and its mass centre if it has only one connection."""
         points = list(self.points[link])
         if len(points) < 2:
             center = self.center(link)
@@ -151,7 +151,7 @@ class Stand:
         )
 
     def middle(self, link: int) -> Point:
-        """Where a link's name points to: its mass centre, else its middle."""
+        """The point that a link's name refers to: its mass centre, else its middle."""
         center = self.center(link)
         if center is not None:
             return center

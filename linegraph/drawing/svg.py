@@ -1,4 +1,4 @@
-"""A scene as SVG: no fonts, scripts or anything else from outside, no ids, the same bytes each time."""
+"""A scene as SVG: without fonts, scripts, ids and external files; the same bytes each time."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ FONT = "DejaVu Sans,Verdana,Helvetica,Arial,sans-serif"
 
 
 def svg_text(scene: Scene) -> str:
-    """The picture as an SVG element, which is a file by itself and may stand inside HTML.
+    """Write a scene as an SVG element, which is a complete file and may be embedded in HTML.
 
-    The paper is white and colours are fixed: it looks the same on a dark page.
+    Background and colours are fixed, so it looks the same on a dark page.
     """
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{scene.width}" height="{scene.height}" '
@@ -30,14 +30,14 @@ def svg_text(scene: Scene) -> str:
 
 
 def escaped(text: str) -> str:
-    """Text that XML takes as text, in content and in attributes."""
+    """Escape text for XML, in content and in attributes."""
     for sign, entity in (("&", "amp"), ("<", "lt"), (">", "gt"), ('"', "quot"), ("'", "#39")):
         text = text.replace(sign, f"&{entity};")
     return clean(text)
 
 
 def number(x: float) -> str:
-    """To a tenth, without what says nothing.
+    """A number rounded to a tenth, without trailing zero.
 
     Example:
         >>> number(12.0), number(0.25), number(-0.04)
@@ -106,7 +106,7 @@ def _text(item: Text) -> str:
     if item.slanted:
         style += ' font-style="italic"'
     if not is_common(item.text):
-        # what letters are wide in a font that is not known is said here
+        # Widths of uncommon letters depend on the font; textLength enforces the width used in the layout.
         wide = width(item.text, item.size, bold=item.bold)
         style += f' textLength="{wide}" lengthAdjust="spacingAndGlyphs"'
     return f"<text {place}{style}>{escaped(item.text)}</text>"

@@ -1,4 +1,4 @@
-"""The signs of joints and force elements, as engineers draw them. Each is drawn about a point, y down."""
+"""Symbols of joints and force elements, each drawn around a point; y is down."""
 
 from __future__ import annotations
 
@@ -26,11 +26,17 @@ if TYPE_CHECKING:
 THIN, SOLID = Pen(INK, 1), Pen(INK, 1.5)
 AXIS, DASHED = Pen(ACCENT, 1, (7, 2.5, 1.5, 2.5)), Pen(GREY, 1.2, (4, 3))
 END_ON = 0.35
-"""An axis whose picture is shorter than this is seen end-on."""
+"""An axis whose projection is shorter than this is drawn end-on."""
 
 
 def joint_symbol(kind: str, at: Point, axis: Point) -> list[Item]:
-    """The sign of a joint; `axis` is its direction in the picture, shorter than 1 where seen aslant."""
+    """The symbol of a joint.
+
+    Args:
+        kind: the joint type; unknown ones get that of a compound joint.
+        at: position in the picture.
+        axis: projected direction of its axis, shorter than 1 if not parallel to the picture.
+    """
     length = sqrt(axis[0] * axis[0] + axis[1] * axis[1])
     end_on = length < END_ON
     along = (1.0, 0.0) if end_on else (axis[0] / length, axis[1] / length)
@@ -39,7 +45,7 @@ def joint_symbol(kind: str, at: Point, axis: Point) -> list[Item]:
 
 
 def _about(at: Point, along: Point) -> Callable[[float, float], Point]:
-    """From coordinates along and across a direction to the picture."""
+    """Convert coordinates along and across a direction to the picture."""
     (x, y), (dx, dy) = at, along
     return lambda a, b: (x + a * dx - b * dy, y + a * dy + b * dx)
 
@@ -66,7 +72,7 @@ def _box(at: Point, along: Point, long: float, wide: float, pen: Pen = SOLID) ->
 
 
 def _revolute(at: Point, along: Point, end_on: bool) -> list[Item]:
-    """A pin: end-on a circle, else a short cylinder about its axis."""
+    """A pin: a circle if seen end-on, else a short cylinder around its axis."""
     if end_on:
         return [Disc(*at, 5, SOLID, PAPER), Disc(*at, 1.4, None, INK)]
     return [*_axis(at, along, 19), _box(at, along, 8, 4.5)]
@@ -86,7 +92,12 @@ def _prismatic(at: Point, along: Point, end_on: bool) -> list[Item]:
 
 
 def carriage(at: Point, axis: Point) -> list[Item]:
-    """A slider that is a body with other joints in its middle; the arrow stands beside it."""
+    """A slider that is a body with other joints in its middle; its arrow is next to it.
+
+    Args:
+        at: position in the picture.
+        axis: projected direction of its axis.
+    """
     length = sqrt(axis[0] * axis[0] + axis[1] * axis[1])
     along = (axis[0] / length, axis[1] / length)
     place = _about(at, along)
@@ -158,12 +169,12 @@ def _axis_pair(at: Point) -> list[Item]:
 
 
 def _free(at: Point, along: Point, end_on: bool) -> list[Item]:
-    """Nothing holds it: a broken ring."""
+    """A dashed ring: no motion is constrained."""
     return [Disc(*at, 9, DASHED), Disc(*at, 1.8, None, INK)]
 
 
 def _compound(at: Point, along: Point, end_on: bool) -> list[Item]:
-    """Several joints at one place: a diamond."""
+    """A diamond: several joints at one place."""
     axis = [] if end_on else _axis(at, along, 17)
     return [*axis, _box(at, (0.7071, 0.7071), 6, 6), Disc(*at, 1.8, None, INK)]
 
@@ -181,7 +192,12 @@ _SIGNS: dict[str, Callable[[Point, Point, bool], list[Item]]] = {
 
 
 def ground_symbol(at: Point, below: bool = True) -> list[Item]:
-    """A support on hatched ground, below or above a point."""
+    """A support on hatched ground.
+
+    Args:
+        at: the supported point.
+        below: whether the support is below the point.
+    """
     (x, y), s = at, 1 if below else -1
     base = y + 14 * s
     hatch = [
@@ -193,7 +209,13 @@ def ground_symbol(at: Point, below: bool = True) -> list[Item]:
 
 
 def hatched(at: Point, along: Point, away: float) -> list[Item]:
-    """Hatched ground along a guide, on its lower side."""
+    """Hatched ground along a guide, on its lower side.
+
+    Args:
+        at: middle of the guide.
+        along: its direction, of length 1.
+        away: distance of the ground from the middle.
+    """
     if along[0] < 0 or (along[0] == 0 and along[1] < 0):
         along = (-along[0], -along[1])
     place = _about(at, along)
@@ -205,7 +227,17 @@ def hatched(at: Point, along: Point, away: float) -> list[Item]:
 
 
 def tie_symbol(kind: str, tail: Point, head: Point, beside: float = 0) -> list[Item]:
-    """A spring, a damper or another tie between two points, moved sideways to make room for its like."""
+    """The symbol of a spring, damper or other element between two points.
+
+    Args:
+        kind: the type of the element.
+        tail: the first point.
+        head: the second point.
+        beside: sideways shift, for several elements between the same points.
+
+    Returns:
+        The items; none if the points are too close.
+    """
     dx, dy = head[0] - tail[0], head[1] - tail[1]
     length = sqrt(dx * dx + dy * dy)
     if length < 8:
@@ -224,7 +256,7 @@ def tie_symbol(kind: str, tail: Point, head: Point, beside: float = 0) -> list[I
 
 
 def _spring(place: Callable[[float, float], Point], length: float, beside: float) -> list[Item]:
-    """A zigzag."""
+    """A zigzag line."""
     turns = max(3, min(9, int(length / 12)))
     first, last = 0.2 * length, 0.8 * length
     step = (last - first) / (2 * turns)
@@ -255,7 +287,15 @@ def _damper(place: Callable[[float, float], Point], length: float, beside: float
 
 
 def capsule(a: Point, b: Point, r: float, pen: Pen, fill: str) -> list[Item]:
-    """A bar with round ends."""
+    """A bar with round ends.
+
+    Args:
+        a: centre of the first end.
+        b: centre of the second end.
+        r: radius of the ends.
+        pen: style of the line.
+        fill: colour of the area.
+    """
     dx, dy = b[0] - a[0], b[1] - a[1]
     length = sqrt(dx * dx + dy * dy)
     if length < 1:

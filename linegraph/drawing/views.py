@@ -1,4 +1,4 @@
-"""From where a mechanism is looked at: face-on where it moves in a plane, else aslant from above."""
+"""The view of a mechanism: along the normal of a planar motion, else obliquely from above."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ _AZIMUTHS = (
     (-_ROOT3, -_HALF),
     (_HALF, _ROOT3),
 )
-"""Directions towards the eye, seen from above."""
+"""Directions to the eye, seen from above."""
 
 
 @dataclass(frozen=True)
 class View:
-    """An orthographic view by its axes in ground, each of length 1.
+    """An orthographic view, by unit vectors in ground axes.
 
     Attributes:
-        right, up: of the picture.
-        toward: to the eye.
-        planar: whether the mechanism is seen face-on.
+        right, up: axes of the picture.
+        toward: direction to the eye.
+        planar: whether the view is along the normal of a planar mechanism.
     """
 
     right: Vector
@@ -47,12 +47,12 @@ class View:
     planar: bool
 
     def seen(self, point: Vector) -> tuple[float, float]:
-        """A point, or a direction, in the picture; y upward."""
+        """Projection of a point or direction; y is upward."""
         return (dot(self.right, point), dot(self.up, point))
 
 
 def chosen_view(found: Poses) -> View:
-    """The view of a mechanism."""
+    """Choose the view of a mechanism: of six oblique ones the one that hides least."""
     normal = _normal(found)
     upward = found.upward or (0.0, 0.0, 1.0)
     if normal is not None:
@@ -63,7 +63,7 @@ def chosen_view(found: Poses) -> View:
         assert up is not None
         right = cross(up, normal)
         largest = max(right, key=abs)
-        # of the two faces that one from which an axis of ground points to the right
+        # Of the two sides, choose the one from which an axis of ground points to the right.
         if largest < 0:
             normal, right = scale(-1, normal), scale(-1, right)
         return View(right, up, normal, True)
@@ -76,7 +76,7 @@ def chosen_view(found: Poses) -> View:
 
 
 def _normal(found: Poses) -> Vector | None:
-    """The normal of the plane that all joints move in; None where there is none."""
+    """Normal of the plane of motion of all joints; None if there is none."""
     turning = [p.axis for p in found.joints if p.joint.kind in ("revolute", "planar")]
     sliding = [p.axis for p in found.joints if p.joint.kind == "prismatic"]
     if len(turning) + len(sliding) < len(found.joints) or not found.joints:
@@ -97,7 +97,7 @@ def _aslant(upward: Vector, first: Vector, second: Vector, x: float, y: float) -
 
 
 def _hidden(view: View, points: Sequence[Vector], found: Poses) -> int:
-    """How much cannot be told apart: pairs of points, and axes that are seen end-on."""
+    """Number of pairs of points that coincide in the picture, and of axes that are seen end-on."""
     flat = [view.seen(point) for point in points]
     size = max(
         (abs(a - b) for p in flat for q in flat for a, b in zip(p, q, strict=True)), default=0.0
@@ -107,6 +107,7 @@ def _hidden(view: View, points: Sequence[Vector], found: Poses) -> int:
     for i, p in enumerate(flat):
         for j in range(i):
             apart = max(abs(p[0] - flat[j][0]), abs(p[1] - flat[j][1]))
+            # The margin makes the choice independent of rounding where distances equal the limit.
             if apart < limit * (1 - 1e-9) and _length(subtract(points[i], points[j])) > limit:
                 count += 1
     for place in found.joints:
@@ -116,7 +117,7 @@ def _hidden(view: View, points: Sequence[Vector], found: Poses) -> int:
 
 
 def _points(found: Poses) -> list[Vector]:
-    """Distinct places of joints and mass centres, not too many."""
+    """Distinct positions of joints and mass centres, limited in number."""
     every = [p.head for p in found.joints] + list(found.centers.values())
     kept: list[Vector] = []
     for point in every:
@@ -126,7 +127,7 @@ def _points(found: Poses) -> list[Vector]:
 
 
 def _in_plane(a: Vector, normal: Vector) -> Vector | None:
-    """The direction of a vector across another one; None where it is along it."""
+    """Direction of a vector's part perpendicular to another one; None if it is parallel to that."""
     rest = subtract(a, scale(dot(a, normal), normal))
     return None if _length(rest) < 1e-3 else _unit(rest)
 

@@ -1,1 +1,1 @@
-"""From a model to files: programs, golden vectors and languages. `emit.emit` does it all."""
+"""From a model to files: programs, golden vectors and languages; `emit.emit` runs all stages."""

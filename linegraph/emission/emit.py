@@ -50,17 +50,18 @@ def emit(
     Args:
         model: the builder or the system.
         out: the folder, created if missing.
-        name: prefix of functions and files; default the model's name, cleaned to an identifier.
-        languages: some of `codegen.LANGUAGES`; default all, for Arduino C alone.
-        tests: write golden vectors, too: programs that check the files against independently computed values.
+        name: prefix of functions and files; default the model's name, turned into an identifier.
+        languages: some of `codegen.LANGUAGES`; default all, or C alone with the option ``arduino``.
+        tests: also write golden vectors: programs that compare the written functions with independent
+            results.
         **choices: ``folded``, ``functions``, ``only``, ``frames``, ``progress``, ``warn``; for C ``trig``,
             ``batch``, ``real``, ``prefix``, ``cmake``, ``arduino``, ``report``. See `Choices`.
 
     Returns:
-        The files written. Nothing is written unless everything could be rendered.
+        The paths of the files written. Nothing is written unless everything could be rendered.
 
     Raises:
-        LinegraphError: the model cannot be derived, a name cannot be emitted, a file not written.
+        LinegraphError: the model cannot be derived, a name cannot be emitted, or a file cannot be written.
 
     Example:
         >>> import tempfile
@@ -82,7 +83,21 @@ def render(
     tests: bool = False,
     **choices: Unpack[Choices],
 ) -> dict[str, str]:
-    """The text of every file that `emit` writes, by file name; the arguments are those of `emit`."""
+    """Render the files that `emit` writes.
+
+    Args:
+        model: the builder or the system.
+        name: prefix of functions and files; default the model's name, turned into an identifier.
+        languages: some of `codegen.LANGUAGES`; default all, or C alone with the option ``arduino``.
+        tests: also render golden vectors.
+        **choices: as for `emit`.
+
+    Returns:
+        The text of each file by name, or by path relative to the folder.
+
+    Raises:
+        LinegraphError: the model cannot be derived, or a name cannot be emitted.
+    """
     of = chosen(choices)
     written = of.languages(languages)
     prefix = codegen.naming.identifier(model.name) if name is None else name
@@ -110,7 +125,7 @@ def render(
 
 
 def _vectors(derivation: Derived, module: Module, frames: Sequence[NamedFrame]) -> Vectors:
-    """Golden vectors of a module."""
+    """Golden vectors of a module, with errors placed in the model's file."""
     from linegraph.verification import golden
 
     try:
@@ -128,7 +143,18 @@ def module_for(
     only: Iterable[str] = (),
     frames: Iterable[str] = (),
 ) -> Module:
-    """The program of every function of a model: what operation counts are taken from.
+    """The program of each function of a model, from which operations are counted.
+
+    Args:
+        model: the builder or the system.
+        name: prefix of functions.
+        folded: write the parameters' values into the programs instead of keeping them symbolic.
+        functions: further functions, of `programs.register.ON_REQUEST`.
+        only: only these of `programs.register.PROGRAMS` and the functions they call.
+        frames: bodies, or frames of bodies as ``body.frame``, whose kinematics are included.
+
+    Raises:
+        ModelError: the model cannot be derived, or there is no such function or frame.
 
     Example:
         >>> from linegraph import Model
@@ -146,7 +172,7 @@ def module_for(
 
 
 def _require_known(wanted: Iterable[str], only: Iterable[str]) -> None:
-    """Refuse functions that are not promised."""
+    """Refuse names of functions that do not exist."""
     for known, asked in ((ON_REQUEST, wanted), (tuple(PROGRAMS), only)):
         for function in asked:
             if function not in known:
@@ -154,7 +180,7 @@ def _require_known(wanted: Iterable[str], only: Iterable[str]) -> None:
 
 
 def _module(derivation: Derived, name: str, request: Request) -> Module:
-    """The programs of a derivation, errors with their place in the model's file."""
+    """The programs of a derivation, with errors placed in the model's file."""
     system = derivation.system
     about = [f"Equations of motion of {system.name}, derived by linegraph {__version__}."]
     about += [text for text in (system.about,) if text]

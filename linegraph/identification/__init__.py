@@ -1,1 +1,1 @@
-"""Which parameters motion can tell apart: standard and base parameters, and the regressor."""
+"""Which parameters a motion can identify: standard parameters, base parameters and the regressor."""

@@ -1,12 +1,13 @@
-"""The base parameters of a model: what of its standard parameters motion can tell apart.
+"""The base parameters of a model: the combinations of its standard parameters that motion can identify.
 
 Inverse dynamics is ``tau = Y pi`` (`regressor`, `standard_parameters`), but some columns of Y are zero and
-some are sums of others. With the independent parameters pi_b and the others pi_d,
+some are linear combinations of others. With the independent parameters pi_b and the others pi_d,
 
     beta = pi_b + K pi_d        Y pi = Y_b beta
 
-K depends on the geometry alone. It is exact: `relations` finds it with symbols for what is symbolic
-in the model. Relations that only coupled or prescribed motions make are looked for in numbers.
+K depends on the geometry alone [Gautier and Khalil 1990]. It is exact: `relations` finds it with symbols
+for what is symbolic in the model. Relations that exist only because motions are coupled or prescribed are
+found numerically, as in [Gautier 1991].
 """
 
 from __future__ import annotations
@@ -36,21 +37,22 @@ Array = Any
 
 @dataclass(frozen=True, eq=False, repr=False)
 class BaseParameters:
-    """The base parameters beta of a model, each a sum of its standard parameters pi.
+    """The base parameters beta of a model, each a linear combination of its standard parameters pi.
 
     ``beta = pi[independent] + K pi[dependent]``, and ``Y pi = Y[:, independent] beta`` for the regressor Y.
-    Geometry is generic: parameters of the model that stand in K have no special values.
+    Parameters of the model in K are assumed generic: special values may reduce the number of base
+    parameters further.
 
     Attributes:
         model: the model's name.
         names: the standard parameters, in the order of pi.
         units: their units.
-        independent: the places in pi of those that stay, one for each base parameter.
-        dependent: the places of those that go into others.
-        without_effect: the places of those that no motion shows; also in `dependent`.
+        independent: indices in pi of the parameters that stay, one for each base parameter.
+        dependent: indices of the parameters that are absorbed by others.
+        without_effect: indices of the parameters that no motion shows; also in `dependent`.
         entries: K by row and column, zeros left out: numbers, or nodes of parameters of the model.
-        derivation: what they are of.
-        of_model: pi of the model's own numbers, for the values of parameters that are given.
+        derivation: the derivation they belong to.
+        of_model: computes pi from the model's own numbers, for given values of its parameters.
 
     Example:
         >>> from linegraph import Model, derive
@@ -79,12 +81,12 @@ class BaseParameters:
 
     @property
     def count(self) -> int:
-        """How many base parameters there are."""
+        """The number of base parameters."""
         return len(self.independent)
 
     @cached_property
     def K(self) -> Expr:
-        """K as a sympy matrix, base parameters x dependent ones."""
+        """K as a SymPy matrix, base parameters x dependent ones."""
         import sympy
 
         found = sympy.zeros(len(self.independent), len(self.dependent))
@@ -94,7 +96,7 @@ class BaseParameters:
 
     @cached_property
     def expressions(self) -> tuple[Expr, ...]:
-        """Each base parameter as a sympy expression of symbols of the names of pi and of the model."""
+        """Each base parameter as a SymPy expression in symbols named as pi and the model's parameters."""
         import sympy
 
         symbols = [sympy.Symbol(name) for name in self.names]
@@ -104,10 +106,13 @@ class BaseParameters:
         return tuple(sympy.Add(*row) for row in rows)
 
     def relation(self, parameters: Mapping[str, float] | None = None) -> Array:
-        """K as a NumPy array, for the model's own parameters or those given.
+        """K as a NumPy array, base parameters x dependent ones.
+
+        Args:
+            parameters: values in place of the model's own.
 
         Raises:
-            ModelError: a parameter has no value, or there is none of the name.
+            ModelError: a parameter has no value, or the model has no parameter of that name.
         """
         import numpy as np
 
@@ -119,7 +124,14 @@ class BaseParameters:
         return found
 
     def matrix(self, parameters: Mapping[str, float] | None = None) -> Array:
-        """B of ``beta = B pi`` as a NumPy array, base parameters x standard ones."""
+        """B of ``beta = B pi`` as a NumPy array, base parameters x standard ones.
+
+        Args:
+            parameters: values in place of the model's own.
+
+        Raises:
+            ModelError: a parameter has no value, or the model has no parameter of that name.
+        """
         import numpy as np
 
         found = np.zeros((len(self.independent), len(self.names)))
@@ -128,11 +140,22 @@ class BaseParameters:
         return found
 
     def values(self, parameters: Mapping[str, float] | None = None) -> Array:
-        """Beta of the model's own standard parameters."""
+        """Values of beta, from the masses, inertias and friction of the model, in SI units.
+
+        Args:
+            parameters: values in place of the model's own.
+
+        Raises:
+            ModelError: a parameter has no value, or the model has no parameter of that name.
+        """
         return self.matrix(parameters) @ self.standard(parameters)
 
     def standard(self, parameters: Mapping[str, float] | None = None) -> Array:
-        """Pi of the model's own numbers."""
+        """Values of the standard parameters pi, from the model's own numbers, in SI units.
+
+        Args:
+            parameters: values in place of the model's own.
+        """
         return self.of_model(parameters or {})
 
     def _values(self, given: Mapping[str, float]) -> dict[str, float]:
@@ -154,11 +177,11 @@ class BaseParameters:
     # -- looks
 
     def __repr__(self) -> str:
-        """Its size."""
+        """Return the numbers of base and standard parameters."""
         return f"<{self.count} base parameters of {self.model}, of {len(self.names)} standard ones>"
 
     def __str__(self) -> str:
-        """A table: each base parameter and what it is the sum of, then those that need none."""
+        """Return a table of the base parameters with their sums, then those that are sums of nothing else."""
         lines = [
             f"{self.count} base parameters of {self.model}, of {len(self.names)} standard parameters"
         ]
@@ -169,7 +192,7 @@ class BaseParameters:
         return "\n".join(lines) + "\n"
 
     def _repr_html_(self) -> str:
-        """The same table, for notebooks."""
+        """Return the same table as HTML, for notebooks."""
         head = "<tr><th>base parameter</th><th>unit</th><th>sum</th></tr>"
         cells = (
             "".join(f"<td style='text-align:left'>{escape(cell)}</td>" for cell in row)
@@ -184,7 +207,7 @@ class BaseParameters:
         return f"<p>{escape(repr(self)[1:-1])}</p><table>{head}{rows}</table>{others}"
 
     def _rows(self) -> list[tuple[str, str, str]]:
-        """Name, unit and sum of each base parameter, joints' own ones that are sums of nothing left out."""
+        """Name, unit and sum of each base parameter; those of joints that are no sums are left out."""
         sums: list[dict[str, list[str]]] = [{} for _ in self.independent]
         for (i, j), x in sorted(self.entries.items(), key=lambda item: item[0]):
             sums[i].setdefault(_text(x), []).append(self.names[self.dependent[j]])
@@ -197,11 +220,11 @@ class BaseParameters:
         return found
 
     def _alone(self, place: int) -> bool:
-        """Whether a parameter is of a joint."""
+        """Whether a parameter belongs to a joint."""
         return self.names[place].rpartition(".")[2] in JOINT_PARTS
 
     def _others(self) -> list[tuple[str, list[str]]]:
-        """What stands beside the table."""
+        """Parameters listed below the table: those of joints that are no sums, and those without effect."""
         summed = {self.independent[i] for i, _ in self.entries}
         alone = [self.names[k] for k in self.independent if self._alone(k) and k not in summed]
         gone = [self.names[k] for k in self.without_effect]
@@ -209,7 +232,7 @@ class BaseParameters:
 
 
 def _written(x: Scalar) -> Expr:
-    """An entry of K in closed form."""
+    """An entry of K as a SymPy expression in closed form."""
     import sympy
 
     from linegraph.algebra.sympy_scalars import to_sympy
@@ -223,14 +246,14 @@ def _written(x: Scalar) -> Expr:
 
 
 def _text(x: Scalar) -> str:
-    """An entry of K for a reader."""
+    """An entry of K as text."""
     if not isinstance(x, Node):
         return f"{float(x):.10g}"
     return str(_written(x)).replace("**", "^")
 
 
 def _term(factor: str, names: Sequence[str]) -> str:
-    """A summand with its sign: a factor, and what it is the factor of."""
+    """A summand with its sign: a factor and the parameters that it multiplies."""
     if factor in ("1", "-1"):
         return " ".join(f"{'-' if factor == '-1' else '+'} {name}" for name in names)
     whole = names[0] if len(names) == 1 else f"({' + '.join(names)})"

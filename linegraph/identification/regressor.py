@@ -1,9 +1,9 @@
-"""The regressor: what a unit of each of a link's ten moments asks of every joint.
+"""The regressor: generalised forces for a unit of each of a link's ten moments [Atkeson et al. 1986].
 
-Inverse dynamics is linear in the moments about a point of the link. By orthogonality the share of a link's
-wrench along a velocity is its product with the motion that this velocity gives the link: with (s, k) the
-angular velocity of the link and the velocity of its origin for a unit of the velocity, and ω, ε, a those of
-the actual motion, a less gravity,
+Inverse dynamics is linear in the moments m, b, J of a link about a point fixed in it. By orthogonality the
+share of the link's wrench (f, n) along a velocity is its product with the motion that the velocity gives
+the link. With (s, k) the angular velocity of the link and the velocity of its origin for a unit of the
+velocity, and ω, ε, a its angular velocity, angular acceleration and the origin's acceleration less gravity,
 
     k . f + s . n        f = m a + U b        n = b x a + J ε + ω x J ω        U = [ε x] + [ω x][ω x]
 
@@ -11,9 +11,10 @@ is linear in m, b and J, with the coefficients
 
     m:  k . a            b:  U^T k + a x s            J:  s^T N(ω, ε)
 
-so that not ten wrenches are carried inward for each link but one motion outward for each velocity, and the
-entries of N are those of U and differences of squares of ω. Wrenches are better where joints of many
-freedoms stand far inward, as under a floating base: their projections there are free. Both are here.
+So one motion for each velocity is carried outward, instead of ten wrenches inward for each link, and the
+entries of N are those of U and differences of squares of ω. Wrenches are cheaper where joints of many
+freedoms are close to ground, as under a floating base, because projecting on their axes costs nothing. Both
+ways are here.
 """
 
 from __future__ import annotations
@@ -36,15 +37,15 @@ if TYPE_CHECKING:
     from linegraph.spatial.placement import Placement
 
 Columns = dict[int, list["Scalar"]]
-"""Of a link, by velocity, the coefficients of its ten moments."""
+"""Coefficients of a link's ten moments, by index of the velocity."""
 
 
 class Station(NamedTuple):
-    """Where the moments of a link are told.
+    """The frame that the moments of a link refer to.
 
     Attributes:
-        link: its index in the tree.
-        pose: the frame they are told in, in the link's own axes.
+        link: index of the link in the tree.
+        pose: the frame's origin (m) and axes, in the link's own frame.
     """
 
     link: int
@@ -54,12 +55,16 @@ class Station(NamedTuple):
 def by_motions(
     state: TreeState, stations: Sequence[Station], acceleration: Sequence[Scalar]
 ) -> list[Columns]:
-    """Of each station the coefficients of m, b and J (xx, xy, yy, xz, yz, zz) along each velocity.
+    """Regressor columns of links, with the motion of each unit velocity carried outward.
 
     Args:
         state: the links and where they are.
-        stations: of each link in question the frame its moments are told in.
-        acceleration: v̇.
+        stations: for each link in question the frame its moments refer to.
+        acceleration: v̇, n.
+
+    Returns:
+        For each station and velocity the coefficients of m, b and J (xx, xy, yy, xz, yz, zz) in the effort
+        along that velocity. Velocities that do not move the link are left out.
     """
     motions = spins(state, acceleration)
     screws = _screws(state)
@@ -80,7 +85,18 @@ def by_motions(
 def by_wrenches(
     state: TreeState, stations: Sequence[Station], acceleration: Sequence[Scalar]
 ) -> list[Columns]:
-    """The same, the wrench of a unit of each moment carried inward."""
+    """Regressor columns of links, with the wrench of each unit moment carried inward.
+
+    The result is that of `by_motions`; only the number of operations differs.
+
+    Args:
+        state: the links and where they are.
+        stations: for each link in question the frame its moments refer to.
+        acceleration: v̇, n.
+
+    Returns:
+        For each station and velocity the coefficients of m, b and J (xx, xy, yy, xz, yz, zz).
+    """
     motions = spins(state, acceleration)
     found = []
     for station in stations:
@@ -105,24 +121,27 @@ def by_wrenches(
 
 
 def _seat(arms: Sequence[Arm], station: Station) -> tuple[Rotation, Vector]:
-    """A station's axes and origin in the working axes of its link."""
+    """Axes and origin of a station in the working axes of its link."""
     turn = arms[station.link].turn
     return turn @ rotation_of(station.pose.rotation), turn.out(station.pose.at)
 
 
 def _table(spin: Spin, rotation: Rotation, at: Vector) -> _Table:
-    """How a station moves, and what its moments ask for."""
+    """Motion of a station's frame, as a table of the wrenches of unit moments."""
     into = rotation.into
     linear = into(add(spin.linear, accelerated(spin, at)))
     return _Table(Spin(into(spin.velocity), into(spin.angular), linear))
 
 
 Screw = tuple[Vector, Vector]
-"""The angular velocity of a link and the velocity of its origin."""
+"""Angular velocity of a link and velocity of its origin."""
 
 
 def _screws(state: TreeState) -> list[dict[int, Screw]]:
-    """How each link moves for a unit of each velocity, in its working frame; those that do not left out."""
+    """Motion of each link for a unit of each velocity, in its working frame.
+
+    Velocities without effect left out.
+    """
     found: list[dict[int, Screw]] = []
     for link, arm in zip(state.tree.links, state.arms, strict=True):
         set_label(state.algebra, f"motion by unit velocities, {link.caption}")
@@ -132,7 +151,7 @@ def _screws(state: TreeState) -> list[dict[int, Screw]]:
             linear = into(add(u, cross(s, arm.at)))
             here[k] = (ZERO if arm.level else into(s), linear)
         motion = arm.motion
-        # where the motion is prescribed there are no velocities
+        # A joint in prescribed motion has axes but no velocities, so the lengths may differ.
         for freedom, s, u in zip(link.velocities, motion.angular, motion.linear, strict=False):
             own = (vector.scale(freedom.ratio, s), vector.scale(freedom.ratio, u))
             before = here.get(freedom.index, (ZERO, ZERO))
@@ -142,18 +161,20 @@ def _screws(state: TreeState) -> list[dict[int, Screw]]:
 
 
 class _Table:
-    """What a unit of each moment asks for, of a link in a given motion."""
+    """Wrenches of unit moments of a link in a given motion."""
 
     def __init__(self, spin: Spin) -> None:
         x, y, z = spin.velocity
         a, b, c = spin.angular
         xx, yy, zz, xy, xz, yz = x * x, y * y, z * z, x * y, x * z, y * z
         self._linear = spin.linear
+        # U = [ε x] + [ω x][ω x], so that U r is the acceleration of a point r relative to the origin.
         self._field = (
             (-(yy + zz), xy - c, xz + b),
             (xy + c, -(xx + zz), yz - a),
             (xz - b, yz + a, -(xx + yy)),
         )
+        # J ε + ω x J ω for a unit of each of xx, xy, yy, xz, yz, zz: the columns of N(ω, ε).
         self._torques: tuple[Vector, ...] = (
             (a, xz, -xy),
             (b - xz, a + yz, xx - yy),
@@ -164,13 +185,13 @@ class _Table:
         )
 
     def along(self, s: Vector, k: Vector) -> list[Scalar]:
-        """The ten coefficients along a velocity that moves the link so."""
+        """The ten coefficients along a velocity that gives the link angular velocity s and velocity k."""
         columns = vector.transpose(self._field)
         first = add(vector.times(columns, k), cross(self._linear, s))
         return [dot(k, self._linear), *first, *(dot(s, n) for n in self._torques)]
 
     def wrenches(self) -> list[tuple[Vector, Vector]]:
-        """Force and torque about the origin that each of the ten asks for."""
+        """Force and torque about the origin for a unit of each of the ten moments."""
         columns = vector.transpose(self._field)
         first = zip(columns, (cross(e, self._linear) for e in IDENTITY_MATRIX), strict=True)
         return [(self._linear, ZERO), *first, *((ZERO, n) for n in self._torques)]

@@ -1,20 +1,22 @@
-"""Which standard parameters no motion can tell apart: exact, link by link from the leaves to the root.
+"""Which combinations of standard parameters have no effect: exact, link by link from the leaves to the root.
 
-Moments P of a link, against the opposite ones on its parent, change no equation of motion if the energies
-of both together stay what they are at all positions and velocities. With x -> w x x + u the velocity field
-that the joint's unit velocity gives the link, D the change of moments that this motion makes, and f(P) any
-linear function of moments that energies of the parent can consist of, as seen from the joint's near frame,
+Moments P of a link, with opposite ones on its parent, leave all equations of motion unchanged if the
+energies of both together stay the same at all positions and velocities. Let x -> w x x + u be the velocity
+field that the joint's unit velocity gives the link, D the rate at which this motion changes moments, and
+f(P) any linear function of moments that occurs in the parent's energies, expressed in the joint's near
+frame. Then
 
     (1)  T_φφ(P) + armature = 0           kinetic energy of the joint's own rate
     (2)  T_φv(P) = 0                      for every velocity v that the parent can have, at every q
     (3)  f(D P) = 0                       for every f, kinetic or of weight, at every q
 
-T_vw is the bilinear kinetic energy. "At every q" is the span closed under the motion of the joint; what the
-parent can have follows from the root outward in the same way: velocities are those of the parent and the
-joint's own, functions f those of the parent, T_φv and T_φφ. A leaf's share has to satisfy this by itself,
-then the tree without the leaf, so for joints with velocities of their own these are all relations.
+T_vw is the bilinear kinetic energy. "At every q" is the span closed under the motion of the joint. The
+parent's span is found the same way from the root outward: its velocities are those of its own parent and
+its joint, its functions f are those of its own parent, T_φv and T_φφ. A leaf must satisfy this by itself,
+then the tree without the leaf; so for joints with velocities of their own these are all relations. [Wensing
+et al. 2017] finds such undetectable transfers of inertia across joints recursively, too, in numbers.
 
-Joints that follow one another and have one parent are taken together. Others that follow, and joints in
+Joints that follow one another and have the same parent are treated together. Other followers, and joints in
 prescribed motion, may have further relations.
 """
 
@@ -38,32 +40,36 @@ if TYPE_CHECKING:
     from linegraph.spatial.placement import Placement
 
 PAIRS = tuple(combinations_with_replacement(range(3), 2))
-"""The places of xx, xy, xz, yy, yz, zz."""
+"""Row and column of xx, xy, xz, yy, yz, zz."""
 
 PREFERRED = ("m", "mz", "my", "mx", "Iyy", "Ixx", "Izz", "Iyz", "Ixz", "Ixy")
-"""Which of a link's parameters go first: for a joint about z those that Khalil's rules let go."""
+"""Order in which a link's parameters are eliminated.
+
+For a joint about z, m, mz and Iyy can go, as in [Khalil and Dombre 2002]; the others follow for special
+geometry.
+"""
 
 TEN = range(10)
 
 
 class Twist(NamedTuple):
-    """A velocity field: angular velocity, and velocity of the origin."""
+    """A velocity field: angular velocity w (rad/s) and velocity u of the origin (m/s)."""
 
     w: Vector
     u: Vector
 
 
 class Member(NamedTuple):
-    """A link as the relations see it.
+    """A link with the geometry that relations depend on.
 
     Attributes:
         parent: index of the link nearer to ground; -1 for ground.
         near: the joint's near frame in the parent's working frame.
-        twists: what unit velocities of the joint give the link, from the tail outward.
-        indices: the entries of v that these are; none where the motion is prescribed.
-        ratio: of a joint of one freedom, how its rate follows from its entry.
+        twists: motions of the link for unit velocities of the joint, from the tail outward.
+        indices: indices of these velocities in v; empty where the motion is prescribed.
+        ratio: for a joint of one freedom, its rate divided by that entry of v.
         home: the frame of the link's parameters, in its working frame.
-        armature: the place of the joint's rotor inertia among all parameters; None where it has none.
+        armature: index of the joint's rotor inertia among all parameters; None where it has none.
     """
 
     parent: int
@@ -77,16 +83,27 @@ class Member(NamedTuple):
 
 @dataclass(frozen=True)
 class Spans:
-    """What a link can do: its velocities, and functions of moments that energies consist of."""
+    """Bases of a link's velocities and of the functions of moments that occur in energies.
+
+    Attributes:
+        twists: rows of 6, angular then linear.
+        functions: rows of 10, coefficients of the moments.
+    """
 
     twists: list[Row]
     functions: list[Row]
 
 
 def null_vectors(members: Sequence[Member], gravity: Vector) -> dict[int, dict[int, Scalar]]:
-    """All relations: by the place of a parameter that can go, what has to change so that nothing does.
+    """All relations between standard parameters: changes of them that leave every motion unchanged.
 
-    Each is 1 at its own parameter and 0 at those of all others.
+    Args:
+        members: the links, parents first.
+        gravity: 3, acceleration of free fall in ground axes (m/s^2).
+
+    Returns:
+        For the index of each parameter that can be eliminated, the change of all parameters by index. It is
+        1 at that parameter and 0 at all others that can be eliminated.
     """
     spans: list[Spans | None] = [None] * len(members)
     ground = Spans([], reduced([_weight(gravity)])[0] if any(x != 0 for x in gravity) else [])
@@ -107,9 +124,13 @@ def null_vectors(members: Sequence[Member], gravity: Vector) -> dict[int, dict[i
 
 
 def handed(members: Sequence[Member]) -> dict[int, dict[int, dict[int, Scalar]]]:
-    """Of each link on a joint of one freedom what its parent can carry as well, whatever that can do.
+    """Relations between a link's parameters and its parent's that hold for any motion of the parent.
 
-    The relations are between the link's own parameters and its parent's.
+    Args:
+        members: the links, parents first; only those on joints of one freedom have such relations here.
+
+    Returns:
+        For each link, the relations as in `null_vectors`.
     """
     anything = Spans(_unit(6), _unit(10))
     found = {}
@@ -125,7 +146,7 @@ def _unit(count: int) -> list[Row]:
 
 
 def _groups(members: Sequence[Member]) -> list[list[int]]:
-    """Links taken together: those of one parent whose joints of one freedom have one entry of v."""
+    """Links to treat together: same parent, joints of one freedom, same entry of v."""
     found: dict[Any, list[int]] = {}
     for i, member in enumerate(members):
         single = len(member.twists) == 1 and member.indices
@@ -135,7 +156,7 @@ def _groups(members: Sequence[Member]) -> list[list[int]]:
 
 
 def _seen(member: Member, spans: Spans | None) -> Spans:
-    """What the parent can do, in the joint's near frame."""
+    """The parent's spans, expressed in the joint's near frame."""
     assert spans is not None
     r, at = Full(member.near.rotation), member.near.at
     twists = []
@@ -144,12 +165,12 @@ def _seen(member: Member, spans: Spans | None) -> Spans:
         twists.append([*r.into(w), *r.into(add(u, cross(w, at)))])
     matrix = carrying(member.near)
     functions = [_pulled(row, matrix) for row in spans.functions]
-    # row by row the parent's, so that links side by side see the same
+    # Rows keep the parent's order, so that rows of links side by side belong together.
     return Spans(twists, functions)
 
 
 def _conditions(members: Sequence[Member], near: Sequence[Spans]) -> tuple[list[Row], list[Spans]]:
-    """What moments of a group's links, and then its armature, have to satisfy; and what the links can do."""
+    """Linear conditions on moments and armature of a group, and the spans of its links."""
     if len(members) > 1:
         return _together(members, near)
     (member,), (spans,) = members, near
@@ -170,14 +191,15 @@ def _together(members: Sequence[Member], near: Sequence[Spans]) -> tuple[list[Ro
 def _crossed(
     twists: Sequence[Twist], ratios: Sequence[Scalar], near: Sequence[Spans], free: bool
 ) -> list[Row]:
-    """(1) to (3) for joints that move together, each row followed by the factor of the armature.
+    """Conditions (1) to (3) for joints that move together, each row followed by the factor of the armature.
 
-    What their parent does they all see at once, so its velocities and functions are put side by side.
+    All joints share the parent's motion, so its velocities and functions are placed side by side.
     """
     count = len(twists)
     rows: list[Row] = []
     if free:
         own = [[r * r * x for x in _kinetic(t, t)] for t, r in zip(twists, ratios, strict=True)]
+        # A rotor's inertia appears in the kinetic energy of the joint's own rate only.
         rows.append([x for part in own for x in part] + [1])
 
     def shifted(row: Row) -> Row:
@@ -199,12 +221,12 @@ def _crossed(
 
 
 def _beside(parts: Sequence[Sequence[Row]]) -> list[Row]:
-    """What each of several links sees of one thing, side by side."""
+    """Concatenate the rows that each of several links has of the same thing."""
     return [[x for row in rows for x in row] for rows in zip(*parts, strict=True)]
 
 
 def _beyond(twist: Twist, near: Spans) -> Spans:
-    """What a link can do beyond a joint of one freedom."""
+    """Spans of a link beyond a joint of one freedom."""
     twists = closed(near.twists, lambda row: _bracket(twist, row))
     functions = closed(near.functions, lambda row: _pulled(row, changing(twist)))
     functions += [_kinetic(twist, _twist(row)) for row in twists]
@@ -215,9 +237,9 @@ def _beyond(twist: Twist, near: Spans) -> Spans:
 def _shares(
     members: Sequence[Member], group: Sequence[int], conditions: list[Row] | None
 ) -> dict[int, dict[int, Scalar]]:
-    """The relations of a group: of its own parameters, armature last, with its parent's.
+    """Relations of a group, between its own parameters, armature last, and its parent's.
 
-    Without conditions nothing of it moves freely, so that none of its parameters has an effect.
+    Without conditions the group does not move freely, and none of its parameters has an effect.
     """
     count = 10 * len(group)
     places = [10 * i + k for i in group for k in TEN]
@@ -251,7 +273,7 @@ def _shares(
 
 
 def _order(members: Sequence[Member], group: Sequence[int], armature: bool) -> list[int]:
-    """Columns of a group's parameters, those first that should go: followers, armature, then the leader."""
+    """Columns of a group's parameters in order of elimination: followers, armature, then the leader."""
     leads = [n for n, i in enumerate(group) if members[i].armature is not None]
     order: list[int] = []
     for n in sorted(range(len(group)), key=lambda n: n in leads):
@@ -262,7 +284,15 @@ def _order(members: Sequence[Member], group: Sequence[int], armature: bool) -> l
 
 
 def without(vector: dict[int, Scalar], known: dict[int, dict[int, Scalar]]) -> dict[int, Scalar]:
-    """A relation in which the parameters of relations farther in do not appear."""
+    """Substitute relations nearer to ground into a relation, to remove parameters eliminated there.
+
+    Args:
+        vector: change of parameters by index.
+        known: relations nearer to ground, each 1 at its key.
+
+    Returns:
+        The equivalent change, zeros left out.
+    """
     found = dict(vector)
     for place in vector:
         if place in known:
@@ -282,7 +312,7 @@ def _moments(x: Row) -> Moments:
 
 
 def carrying(placement: Placement) -> list[Row]:
-    """The matrix that takes moments from a frame to the one it is placed in, by columns."""
+    """Matrix that transforms moments from a frame to the frame it is placed in, as ten columns."""
     rotation = Rotation((Full(placement.rotation),))
     columns = []
     for k in TEN:
@@ -292,7 +322,7 @@ def carrying(placement: Placement) -> list[Row]:
 
 
 def changing(twist: Twist) -> list[Row]:
-    """D: the change of moments that a motion makes, by columns."""
+    """D: rate of change of moments under a velocity field, as ten columns."""
     columns = []
     for k in TEN:
         m, first, second = _parts([int(n == k) for n in TEN])
@@ -307,7 +337,7 @@ def changing(twist: Twist) -> list[Row]:
 
 
 def _parts(x: Row) -> tuple[Scalar, Vector, Matrix]:
-    """M, b and S as a matrix."""
+    """Split ten moments into m, b and S, the matrix of second moments."""
     m, bx, by, bz, xx, xy, xz, yy, yz, zz = x
     return m, (bx, by, bz), ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
 
@@ -321,7 +351,7 @@ def _times(columns: Sequence[Row], x: Row) -> Row:
 
 
 def _pulled(row: Row, columns: Sequence[Row]) -> Row:
-    """A function of moments, of moments that are changed first."""
+    """Coefficients of a function of moments after a linear change of the moments."""
     return [_sum(a * b for a, b in zip(row, column, strict=True)) for column in columns]
 
 
@@ -333,7 +363,7 @@ def _sum(parts: Any) -> Scalar:
 
 
 def _kinetic(a: Twist, b: Twist) -> Row:
-    """T_ab, a function of moments: ∫ (w_a x r + u_a) . (w_b x r + u_b) dm."""
+    """T_ab as coefficients of moments: ∫ (w_a x r + u_a) . (w_b x r + u_b) dm."""
     first = subtract(ZERO, add(cross(a.w, b.u), cross(b.w, a.u)))
     both = dot(a.w, b.w)
     second = [
@@ -343,12 +373,12 @@ def _kinetic(a: Twist, b: Twist) -> Row:
 
 
 def _weight(gravity: Vector) -> Row:
-    """The potential energy of weight, up to sign."""
+    """Potential energy of weight as coefficients of moments, up to its sign."""
     return [0, *gravity, 0, 0, 0, 0, 0, 0]
 
 
 def _bracket(a: Twist, row: Row) -> Row:
-    """How a velocity changes, seen from a frame that moves."""
+    """Lie bracket of two velocity fields: change of one as seen from a frame that moves with the other."""
     w, u = _twist(row)
     return [*cross(a.w, w), *add(cross(a.w, u), cross(a.u, w))]
 
@@ -358,6 +388,6 @@ def _twist(row: Row) -> Twist:
 
 
 def _standard(x: Row) -> Row:
-    """Moments as ten standard parameters: m, b and J (xx, xy, yy, xz, yz, zz)."""
+    """Convert m, b and S to the ten standard parameters m, b and J (xx, xy, yy, xz, yz, zz)."""
     m, bx, by, bz, xx, xy, xz, yy, yz, zz = x
     return [m, bx, by, bz, yy + zz, -xy, xx + zz, -xz, -yz, xx + yy]

@@ -1,4 +1,4 @@
-"""The base parameters of a derivation: its relations, exact, and those that only numbers show."""
+"""The base parameters of a derivation: exact relations, and those that only numbers show."""
 
 from __future__ import annotations
 
@@ -27,25 +27,25 @@ if TYPE_CHECKING:
 Array = Any
 
 SAMPLES = 3
-"""Random values of the model's parameters at which the geometry is judged."""
+"""Number of random values of the model's parameters at which the geometry is tested for constants."""
 
 SPREAD, TRIES = 0.5, 60
-"""By what share these differ from the model's own at most, and how many are tried."""
+"""Largest relative change of parameters in a sample, and how many samples are tried."""
 
 DUST = 1e-14
-"""Rounding of entries of rotations, and of lengths (m)."""
+"""Rounding of entries of rotation matrices, and of lengths (m)."""
 
 SINGULAR = 1e-10
-"""Columns of the regressor, scaled to one length, are dependent below this share of the largest value."""
+"""Singular values below this fraction of the largest are zero, for columns scaled to unit length."""
 
 TIMES = 12
-"""At how many times a prescribed motion is looked at."""
+"""Number of times at which a prescribed motion is evaluated."""
 
 CONSTANT = 1e-7
-"""How far factors of relations found in numbers may differ from one sample to the other."""
+"""Largest difference between samples of a factor that is constant."""
 
 ROUNDING = 1e-13
-"""Of such a factor, to be taken for an integer."""
+"""Largest difference of such a factor from an integer that it is taken for."""
 
 
 def base_parameters(
@@ -55,7 +55,10 @@ def base_parameters(
 
     Args:
         derivation: the model.
-        of_model: its standard parameters pi in numbers, for the values of parameters that are given.
+        of_model: computes its standard parameters pi, in SI units, for given values of parameters.
+
+    Returns:
+        Names, units, K and the indices of independent and dependent parameters.
 
     Raises:
         ModelError: nothing moves; or coupled or prescribed motions make a relation whose coefficients
@@ -96,12 +99,15 @@ def base_parameters(
 
 
 def members_of(derivation: Derived, tree: KinematicTree, *, own_values: bool) -> list[Member]:
-    """The links of a tree of the model, as relations see them.
+    """The links of a tree with the geometry that relations depend on.
 
     Args:
-        derivation: of what.
-        tree: its links over some DAG, parameters symbols there, or the model's own values.
-        own_values: whether the latter.
+        derivation: the model.
+        tree: its links over some DAG, where parameters are symbols or have the model's own values.
+        own_values: whether they have the model's own values.
+
+    Returns:
+        One member for each link, parents first.
     """
     samples = [derivation.numeric()] if own_values else _samples(derivation)
     seen = axes(tree)
@@ -116,11 +122,12 @@ def _node(x: Scalar) -> Scalar:
 
 
 def _samples(derivation: Derived) -> list[Numeric]:
-    """The model at random parameters of the size of its own, closer to these where it is not defined.
+    """The model at random parameters near its own, ever nearer where it is not defined.
 
     Raises:
-        ModelError: it is not defined anywhere near.
+        ModelError: it is not defined at any of them.
     """
+    # Fixed seed: which parameters are independent must not depend on chance.
     draw = random.Random(0)
     parameters = [p for p in derivation.system.parameters.values() if not p.derived]
     found: list[Numeric] = []
@@ -161,7 +168,7 @@ def _placement(node: Placement, values: Sequence[Placement]) -> Placement:
 def _members(
     tree: KinematicTree, samples: Sequence[KinematicTree], seen: Sequence[Axis]
 ) -> list[Member]:
-    """The links, with all that is constant at the samples."""
+    """The links, with constants recognised by their values at the samples."""
     trees = (tree, *samples)
     poses = [[home.pose for home in homes(one)] for one in trees]
     armature = {axis.joint: 10 * len(tree.links) + 3 * n + 2 for n, axis in enumerate(seen)}
@@ -185,9 +192,9 @@ def _near(link: Link) -> Placement:
 
 
 def _twists(link: Link, others: Sequence[Link]) -> tuple[Twist, ...]:
-    """What unit velocities of a joint are at rest, in its own axes.
+    """Motions for unit velocities of a joint at rest, in its own axes.
 
-    Joints of several freedoms are turns and shifts one after the other about these.
+    A joint of several freedoms is a sequence of turns and shifts about these.
     """
     motions = []
     for one in (link, *others):
@@ -203,7 +210,7 @@ def _twists(link: Link, others: Sequence[Link]) -> tuple[Twist, ...]:
     ]
     if link.forward:
         return tuple(found)
-    # crossed from its head: the other way round, the last one first
+    # Traversed from head to tail: motions are reversed, the last one first.
     return tuple(Twist(negate(w), negate(u)) for w, u in reversed(found))
 
 
@@ -213,13 +220,18 @@ def _twists(link: Link, others: Sequence[Link]) -> tuple[Twist, ...]:
 def regressor_rows(
     numerics: Sequence[Numeric], seen: Sequence[Axis], states: int, draw: random.Random
 ) -> Array:
-    """Y at random states, one below the other; friction's columns, which depend on nothing else, are zero.
+    """Y at random states, stacked.
+
+    Columns of dry and viscous friction are zero here: no other column depends on them.
 
     Args:
-        numerics: the model in numbers, at one time or at several.
-        seen: the joints with parameters.
-        states: how many states of each.
-        draw: where they come from.
+        numerics: the model in numbers, at one time or several.
+        seen: the joints that have parameters.
+        states: number of states for each.
+        draw: random number generator.
+
+    Returns:
+        (states times len(numerics) times n) x npi.
     """
     import numpy as np
 
@@ -236,7 +248,7 @@ def regressor_rows(
 
 
 def _fill(Y: Array, numeric: Numeric, seen: Sequence[Axis], state: tuple[list[float], ...]) -> None:
-    """Y at a state."""
+    """Write Y at a state q, v, v̇ into an n x npi array."""
     tree = numeric.tree
     q, v, a = state
     stations = [Station(i, home.pose) for i, home in enumerate(homes(tree))]
@@ -251,7 +263,13 @@ def _fill(Y: Array, numeric: Numeric, seen: Sequence[Axis], state: tuple[list[fl
 
 
 def in_numbers(derivation: Derived, sample: Numeric, seed: int) -> list[Numeric]:
-    """A sample at several times and inputs, where prescribed motions depend on them."""
+    """The model of a sample at several times and inputs if it has prescribed motions, else the sample alone.
+
+    Args:
+        derivation: the model.
+        sample: the model at some values of its parameters.
+        seed: seed of the times and inputs.
+    """
     places = derivation.structure.layout.places.values()
     if not any(place.drive for place in places):
         return [sample]
@@ -266,7 +284,7 @@ def _completed(
     seen: Sequence[Axis],
     vectors: dict[int, dict[int, Scalar]],
 ) -> dict[int, dict[int, Scalar]]:
-    """All relations, those added that only show in numbers: of coupled joints and prescribed motions."""
+    """All relations: those given, and those of coupled joints and prescribed motions, found in numbers."""
     tree = derivation.structure
     driven = any(place.drive for place in tree.layout.places.values())
     if not (tree.coupled or driven):
@@ -283,7 +301,10 @@ def _completed(
 
 
 def _order(tree: KinematicTree, seen: Sequence[Axis]) -> list[int]:
-    """Parameters of links and rotors, those first that should go: rotors, what follows, Khalil's order."""
+    """Parameters of links and rotors in order of elimination.
+
+    Rotors come first, then followers, then the other links, each in the order of `PREFERRED`.
+    """
     count = 10 * len(tree.links)
     own = {axis.joint for axis in seen}
     followers = [i for i, link in enumerate(tree.links) if link.joint.name not in own]
@@ -297,7 +318,7 @@ def _order(tree: KinematicTree, seen: Sequence[Axis]) -> list[int]:
 def _table(
     derivation: Derived, seen: Sequence[Axis], n: int, sample: Numeric, left: Sequence[int]
 ) -> Array:
-    """Columns of Y at random states, at more of them than there are columns."""
+    """Columns of Y at random states, more rows than columns."""
     numerics = in_numbers(derivation, sample, n)
     states = 3 * len(left) // len(sample.tree.velocities) + 8
     each = states // len(numerics) + 1
@@ -305,14 +326,16 @@ def _table(
 
 
 def _pivots(table: Array) -> list[int]:
-    """Columns that are sums of the others: as many as there are relations, the first that can be."""
+    """Columns that depend on the others: as many as there are relations, the first possible ones."""
     import numpy as np
 
     scales = np.linalg.norm(table, axis=0)
     scales[scales == 0] = 1
+    # Columns have different units; scaled to unit length, one threshold on singular values fits all.
     _, values, right = np.linalg.svd(table / scales, full_matrices=False)
     rows = right[values < SINGULAR * values[0]]
     pivots: list[int] = []
+    # Pivots that are not weak come first, so that factors stay moderate; a second pass takes the others.
     for least in (WEAK, 0.0):
         for k in range(rows.shape[1]):
             if not len(rows) or k in pivots:
@@ -329,10 +352,10 @@ def _pivots(table: Array) -> list[int]:
 def _solved(
     derivation: Derived, tables: Sequence[Array], pivots: Sequence[int]
 ) -> list[tuple[int, dict[int, Scalar]]]:
-    """Each pivot's relation, the same for all samples.
+    """The relation of each pivot, equal for all samples.
 
     Raises:
-        ModelError: its coefficients are others for other parameters of the model.
+        ModelError: its coefficients depend on the model's parameters.
     """
     import numpy as np
 

@@ -1,4 +1,4 @@
-"""The standard parameters pi: what inverse dynamics is linear in, ten of each link and three of each joint.
+"""The standard parameters pi, in which inverse dynamics is linear: ten of each link and three of each joint.
 
     link.m                              mass (kg)
     link.mx, my, mz                     first moment of mass (kg m)
@@ -7,10 +7,11 @@
     joint.friction                      dry friction: friction tanh(w / width)
     joint.armature                      inertia along the joint's velocity: armature dw/dt
 
-A link is what one moving joint carries, all bodies welded together; it has the name of the body that the
-joint is connected to. Its moments are about that body's origin and in its axes: the inertia is not about the
-mass centre. Joints are those of one freedom with a velocity of their own: a joint that follows another adds
-to the other's parameters, one in prescribed motion has none.
+A link is everything that one moving joint carries, all bodies welded together. It is named after the body
+that the joint is connected to. Its moments are about that body's origin and in its axes: the inertia is not
+about the mass centre. Off-diagonal entries have the sign of the inertia matrix, Ixy = -∫ x y dm. Joints are
+those of one freedom with a velocity of their own: a joint that follows another adds to the other's
+parameters, and one in prescribed motion has none.
 """
 
 from __future__ import annotations
@@ -37,18 +38,18 @@ if TYPE_CHECKING:
     from linegraph.model.system import System
 
 MOMENTS = ("m", "mx", "my", "mz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz")
-"""The ten of a link, in this order: that of Pinocchio's `toDynamicParameters`."""
+"""The ten parameters of a link, in the order of Pinocchio's `toDynamicParameters`."""
 
 JOINT_PARTS = ("damping", "friction", "armature")
-"""The three of a joint."""
+"""The three parameters of a joint."""
 
 
 class Home(NamedTuple):
-    """The frame that a link's parameters are told in: that of the body its joint carries.
+    """The frame that a link's parameters refer to: that of the body its joint carries.
 
     Attributes:
-        body: its name, which is the link's.
-        pose: its frame in the link's working frame.
+        body: name of the body, which is also the link's.
+        pose: the body's frame in the link's working frame.
     """
 
     body: str
@@ -61,9 +62,10 @@ class Axis:
 
     Attributes:
         joint: its name.
-        row: its rate as a sum of entries of v.
-        width: the rate at which its dry friction has risen to 76 % (rad/s or m/s), a model value.
-        turns: whether it turns and does not slide.
+        row: its rate as a linear combination of entries of v.
+        width: the rate at which dry friction reaches 76 % of its limit (rad/s or m/s), a value of the
+            model.
+        turns: True for rotation, False for translation.
     """
 
     joint: str
@@ -72,7 +74,7 @@ class Axis:
     turns: bool
 
     def rate(self, v: Any) -> Scalar:
-        """The same sum over v, or over its derivatives."""
+        """The joint's rate from v, or its second derivative from v̇."""
         total: Scalar = 0
         for freedom in self.row:
             total = total + freedom.ratio * v[freedom.index]
@@ -80,7 +82,7 @@ class Axis:
 
 
 def homes(tree: KinematicTree) -> list[Home]:
-    """Of each link the body that its joint carries."""
+    """For each link the body that its joint carries, and that body's frame in the link's working frame."""
     found: dict[int, Home] = {}
     for body, (link, pose) in tree.bodies.items():
         if link >= 0:
@@ -104,14 +106,14 @@ def axes(tree: KinematicTree) -> list[Axis]:
 
 
 def _width(model: System, joint: str) -> Any:
-    """The width of a joint's first friction element; that of the word's default where there is none."""
+    """Width of a joint's first friction element, or the default width if it has none."""
     own = (e for e in model.force_elements if isinstance(e, Friction) and e.joint == joint)
     constant = (e.width for e in own if names_in(e.width) <= set(model.parameters))
     return next(constant, Friction.width)
 
 
 def quantities(tree: KinematicTree) -> tuple[Quantity, ...]:
-    """The standard parameters with their units, links before joints."""
+    """Names and units of the standard parameters, those of links before those of joints."""
     found = []
     for home in homes(tree):
         who = f"of {home.body}"
@@ -135,7 +137,12 @@ def quantities(tree: KinematicTree) -> tuple[Quantity, ...]:
 
 
 def link_values(tree: KinematicTree) -> list[Scalar]:
-    """The ten moments of each link, of the model's own numbers."""
+    """The ten moments of each link, summed over its bodies as given in the model.
+
+    Returns:
+        10 values for each link in the order of `MOMENTS` (kg, kg m, kg m^2), about the home's origin and in
+        its axes.
+    """
     resolve, model = tree.resolve, tree.system
     found = homes(tree)
     moments = [NO_MOMENTS] * len(found)
@@ -149,6 +156,7 @@ def link_values(tree: KinematicTree) -> list[Scalar]:
         moments[link] = joined(moments[link], body_moments(model.bodies[name], resolve, here))
     values: list[Scalar] = []
     for total in moments:
+        # Stored row by row, listed column by column as in Pinocchio.
         xx, xy, xz, yy, yz, zz = total.inertia
         values += [total.mass, *total.first, xx, xy, yy, xz, yz, zz]
     return values
@@ -156,11 +164,11 @@ def link_values(tree: KinematicTree) -> list[Scalar]:
 
 @dataclass(frozen=True)
 class Bearings:
-    """What joints' own elements are worth as parameters.
+    """Friction of joints as parameters, and the elements that are not.
 
     Attributes:
-        damping, friction: by joint.
-        others: the elements and loads that are no parameters: they make `rest`.
+        damping, friction: viscous and dry friction by joint.
+        others: the remaining elements and loads, whose forces make up `rest`.
     """
 
     damping: dict[str, Scalar]
@@ -169,7 +177,17 @@ class Bearings:
 
 
 def friction_values(tree: KinematicTree, elements: Iterable[Element | Load]) -> Bearings:
-    """Sort elements into joints' parameters and all others."""
+    """Separate elements into parameters of joints and all others.
+
+    An element is a parameter if it acts along a joint that has some, and its values are constants.
+
+    Args:
+        tree: the links and coordinates.
+        elements: the elements and loads to separate.
+
+    Returns:
+        Viscous friction (N m s or N s/m) and dry friction (N m or N) by joint, and the other elements.
+    """
     resolve = tree.resolve
     known = {axis.joint: axis for axis in axes(tree)}
     damping: dict[str, Scalar] = dict.fromkeys(known, 0)
@@ -188,7 +206,7 @@ def friction_values(tree: KinematicTree, elements: Iterable[Element | Load]) -> 
             same = resolve(element.width) == resolve(axis.width) and ratio in (1, -1)
             dry = resolve(element.coulomb)
             if dry != 0 and not same:
-                # it rises with another width than the joint's column
+                # Its tanh has another width than the joint's column.
                 others.append(element)
                 continue
             viscous = element.viscous
@@ -200,7 +218,7 @@ def friction_values(tree: KinematicTree, elements: Iterable[Element | Load]) -> 
 def _seat(
     tree: KinematicTree, known: Mapping[str, Axis], element: Element | Load
 ) -> tuple[Axis, Scalar] | None:
-    """The joint whose parameters an element adds to, and how much faster its own joint is."""
+    """The joint whose parameters an element adds to, and the ratio of the two joints' rates."""
     joint = getattr(element, "joint", None)
     if joint is None:
         return None
@@ -212,7 +230,16 @@ def _seat(
 def led_by(
     tree: KinematicTree, known: Mapping[str, Axis], joint: str
 ) -> tuple[Axis, Scalar] | None:
-    """Of a joint that follows another of `known`: that other, and the ratio."""
+    """The joint of `known` that another joint follows, and the ratio of the follower's rate to that joint's.
+
+    Args:
+        tree: the links and coordinates.
+        known: joints with parameters, by name.
+        joint: name of the joint that may be a follower.
+
+    Returns:
+        None if it follows none of them with a constant ratio.
+    """
     place = tree.layout.own(joint)
     if place is None or tree.levelled or len(place.velocities) != 1:
         return None

@@ -1,8 +1,8 @@
-"""Columns of the regressor that are sums of others: computed as such where that is cheaper.
+"""Columns of the regressor that are linear combinations of others, computed as such where that is cheaper.
 
-What a parent can carry as well as a link, whatever moves (`relations`), makes a column of the
-link's a sum of others of its own and of its parent's. Of a hinge on an axis through the parent's origin that
-is one addition for a mass or a first moment instead of a product of vectors.
+A change of a link's parameters that the parent can compensate at any motion (`relations`) makes one column
+of the link a combination of other columns of the link and its parent. For a hinge on an axis through the
+parent's origin this is one addition for a mass or first moment, in place of products of vectors.
 """
 
 from __future__ import annotations
@@ -24,18 +24,19 @@ if TYPE_CHECKING:
     from linegraph.numeric.derived import Derived
 
 LARGEST = 16
-"""Sums with larger factors would lose digits."""
+"""Largest factor of a combination: larger ones would lose digits."""
 
 COSTS = (4, *[8] * 3, *[5] * 6)
-"""About what a coefficient of each moment costs by itself."""
+"""Approximate operations for a coefficient of each moment computed directly."""
 
 
 class TiedColumn(NamedTuple):
-    """A column of a link as a sum of others.
+    """A column of a link as a linear combination of others.
 
     Attributes:
-        link, moment: which column; the parent has some of the others.
-        terms: link, moment and factor of each.
+        link, moment: the column.
+        parent: the link nearer to ground, which has some of the other columns.
+        terms: link, moment and factor of each summand.
     """
 
     link: int
@@ -45,18 +46,21 @@ class TiedColumn(NamedTuple):
 
     @property
     def cheap(self) -> bool:
-        """Whether the sum costs no more than the column by itself."""
+        """Whether the combination costs no more operations than the column itself."""
         products = sum(factor not in (1, -1) for _, _, factor in self.terms)
         return products + len(self.terms) - 1 <= COSTS[self.moment]
 
 
 def ties(derivation: Derived, tree: KinematicTree, *, folded: bool) -> list[TiedColumn]:
-    """The ties of all links beyond another one, inner links first.
+    """Columns that can be computed from others, inner links first.
 
     Args:
-        derivation: of what.
-        tree: its links, over the algebra in which factors are wanted.
+        derivation: the model.
+        tree: its links, over the algebra of the factors.
         folded: whether parameters are numbers there.
+
+    Returns:
+        The columns of all links whose parent is a link; only factors up to `LARGEST` and without divisions.
     """
     found = []
     own = len(MOMENTS)
@@ -76,7 +80,7 @@ def ties(derivation: Derived, tree: KinematicTree, *, folded: bool) -> list[Tied
 
 
 def _divides(factor: Scalar) -> bool:
-    """Whether a factor may have no value: where a parameter is divided by."""
+    """Whether a factor divides by a parameter and so may be undefined."""
     pending, seen = [factor], set()
     while pending:
         node = pending.pop()
@@ -89,7 +93,12 @@ def _divides(factor: Scalar) -> bool:
 
 
 def tied(columns: Sequence[Columns], chosen: Sequence[TiedColumn]) -> list[Columns]:
-    """Columns in which some are written as sums, along all velocities that the parent has, too."""
+    """Replace columns by linear combinations, for all velocities that also move the parent.
+
+    Args:
+        columns: for each link, the coefficients of its moments by velocity.
+        chosen: the columns to replace.
+    """
     found = [{k: list(entries) for k, entries in of_link.items()} for of_link in columns]
     for tie in chosen:
         for k, entries in found[tie.link].items():

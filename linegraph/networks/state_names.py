@@ -67,7 +67,12 @@ def variable_name(system: System, branches: Sequence[Branch], symbol: Symbol) ->
 
 
 def domain_of(system: System, name: str) -> Domain:
-    """A domain of the system's own, or one that all know."""
+    """The domain of a name: one that the system declares, or a built-in one.
+
+    Args:
+        system: may declare domains.
+        name: ``electrical``, ``hydraulic``, ...
+    """
     return system.domains.get(name) or DOMAINS[name]
 
 

@@ -1,4 +1,4 @@
-"""A model from a file, whatever its kind."""
+"""Reading a model from a file of any kind."""
 
 from __future__ import annotations
 
@@ -19,13 +19,16 @@ def read(
 
     Args:
         path: the file.
-        base: of a URDF, whether its root is ``fixed`` or ``floating``.
-        symbolic: of a URDF, whether masses, moments and offsets become parameters.
-        snap: how close entries of rotations are to 0, 1/2 or 1 to be these.
+        base: ``fixed`` or ``floating``: how the root of a URDF is connected to ground.
+        symbolic: whether masses, moments and offsets of a URDF become parameters.
+        snap: entries of rotation matrices this close to 0, 1 or 1/2 become these exactly.
+
+    Returns:
+        The model; warnings about the file are in its `warnings`.
 
     Raises:
-        SourceError: something in the file is wrong; the message names the place.
-        LinegraphError: the file cannot be read, or a model file is to float.
+        SourceError: the file is wrong; the message names the line.
+        LinegraphError: the file cannot be read, or a floating base was requested for a model file.
     """
     source = os.fspath(path)
     if is_urdf(source):
@@ -43,7 +46,7 @@ def read(
 
 
 def is_urdf(source: str) -> bool:
-    """By the name; where that does not tell, by what the file begins with."""
+    """Whether a file is a URDF: by its ending, else by its first character."""
     ending = source.lower().rpartition(".")[2]
     if ending in ("toml", "json"):
         return False

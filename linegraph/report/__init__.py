@@ -1,9 +1,8 @@
-"""What people read of a model: an overview, and the derivation as a person would write it.
+"""Texts about a model for readers: an overview, and the derivation step by step.
 
-overview      `linegraph show`
-contents      the document of a derivation: system, graphs, laws, principle, forms
-document      what a document consists of, whatever it is written in
-text, markdown, latex, html    its writers
+overview      `linegraph show` contents      the document of a derivation: system, graphs, laws, principle,
+forms document      the parts of a document, independent of the format text, markdown, latex, html    its
+writers
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
     from linegraph.derivation import Derivation
 
 FORMATS = {"text": ".txt", "markdown": ".md", "latex": ".tex", "html": ".html"}
-"""What a report may be written in, and how its files end."""
+"""Formats of reports with the endings of their files."""
 
 
 def report(
@@ -33,7 +32,7 @@ def report(
     folded: bool = False,
     progress: Callable[[str], None] | None = None,
 ) -> str:
-    """The derivation of a model as a person would write it.
+    """Write a readable derivation of a model.
 
     Args:
         derivation: the derived model.
@@ -41,6 +40,9 @@ def report(
         level: how far closed forms are simplified: ``none``, ``fast`` or ``full``.
         folded: write the parameters' values in place of their names.
         progress: called with a short text before each stage.
+
+    Returns:
+        The text of the report.
 
     Raises:
         LinegraphError: there is no such format.
@@ -64,10 +66,10 @@ def report(
 
 
 def format_of(path: str) -> str:
-    """The format of a file by its ending; text for a device or a pipe whose name has none.
+    """The format of a file by its ending; text for a device or pipe without one.
 
     Raises:
-        LinegraphError: no format ends so.
+        LinegraphError: the ending belongs to no format.
     """
     for name, ending in FORMATS.items():
         if path.lower().endswith(ending):
@@ -79,7 +81,14 @@ def format_of(path: str) -> str:
 
 
 def save(path: str, text: str) -> Path:
-    """Write a report, whole or not at all.
+    """Write a report to a file, completely or not at all.
+
+    Args:
+        path: the file.
+        text: the report.
+
+    Returns:
+        The path of the file.
 
     Raises:
         LinegraphError: it cannot be written.

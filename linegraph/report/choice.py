@@ -1,4 +1,4 @@
-"""The chosen trees, and why these: what each edge weighs, what was wished for, which joints were cut."""
+"""Section on the chosen trees: weights of edges, choices of the user, and joints that were cut."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def chosen_tree(subject: Subject) -> Section:
-    """The branches, and why these."""
+    """The section that lists the branches and the reasons for choosing them."""
     text = (
         "A tree connects all vertices of a part without a circuit; its edges are branches, the others "
         "chords. The across variables of branches determine all others, so the tree decides which variables "
@@ -116,7 +116,7 @@ def _wishes(subject: Subject) -> list[Text]:
 
 
 def _cuts(subject: Subject, found: dict[str, float]) -> list[Text]:
-    """Why each joint that is a chord is one."""
+    """For each joint that is a chord, the reason."""
     texts: list[Text] = []
     for chord in subject.derivation.formulation.chords:
         circuit = subject.derivation.circuit_of(chord)
@@ -139,7 +139,7 @@ def _cuts(subject: Subject, found: dict[str, float]) -> list[Text]:
 
 
 def _normal(subject: Subject) -> list[Block]:
-    """The normal tree: sources, stores, dissipators, by what they give."""
+    """The normal tree of each network: sources, stores and dissipators."""
     network = subject.network
     assert network is not None
     blocks: list[Block] = [

@@ -1,4 +1,4 @@
-"""The report of a derivation: what stands in it, in the order in which it is derived."""
+"""The report of a derivation: its sections, in the order of the derivation."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ def document(
     folded: bool = False,
     progress: Callable[[str], None] | None = None,
 ) -> Document:
-    """The report of a derivation.
+    """Compose the report of a derivation.
 
     Args:
-        derivation: what to report on.
+        derivation: the derived model.
         level: how far closed forms are simplified: ``none``, ``fast`` or ``full``.
         folded: whether to write parameters' values in place of their names.
         progress: called with a short text before each stage.
@@ -59,7 +59,7 @@ def document(
 
 
 def _told(about: str) -> tuple[str, str]:
-    """What a model says of itself, and from which file it was made, which stands at the end."""
+    """Split a model's description from the note about its source file, which goes to the end."""
     found = SOURCE.search(about)
     if found is None:
         return about, ""

@@ -1,4 +1,4 @@
-"""What a report consists of, whatever it is written in: sections, paragraphs, tables, formulas, pictures."""
+"""Parts of a report, independent of the format: sections, paragraphs, tables, formulas, pictures."""
 
 from __future__ import annotations
 
@@ -32,20 +32,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Code:
-    """Text of a model, such as a name; or words that are `strong`."""
+    """Text from a model, such as a name; or emphasised text.
+
+    Attributes:
+        text: the text.
+        strong: whether it is emphasised instead of set as code.
+    """
 
     text: str
     strong: bool = False
 
     @property
     def tag(self) -> str:
-        """The element that it is in HTML."""
+        """Name of its HTML element."""
         return "strong" if self.strong else "code"
 
 
 Inline: TypeAlias = "str | Code | Math"
 Text: TypeAlias = tuple[Inline, ...]
-"""Words, names and formulas in a line."""
+"""Words, names and formulas in one line."""
 
 FORMULA = (
     Name,
@@ -62,19 +67,28 @@ FORMULA = (
     Over,
     Raw,
 )
-"""The inlines that are formulas."""
+"""Types of inline parts that are formulas."""
 
 
 @dataclass(frozen=True)
 class Paragraph:
-    """Words."""
+    """A paragraph of running text.
+
+    Attributes:
+        text: its words, names and formulas.
+    """
 
     text: Text
 
 
 @dataclass(frozen=True)
 class CellTable:
-    """Rows of cells under a head."""
+    """A table with a head.
+
+    Attributes:
+        head: titles of the columns.
+        rows: the cells of each row.
+    """
 
     head: tuple[str, ...]
     rows: tuple[tuple[Text, ...], ...]
@@ -82,11 +96,12 @@ class CellTable:
 
 @dataclass(frozen=True)
 class Matrix:
-    """An integer matrix with its rows and columns named.
+    """An integer matrix with named rows and columns.
 
     Attributes:
         name: its letter.
-        ways: what its rows and its columns are.
+        matrix: the entries.
+        ways: the things that label rows and columns, such as branches and chords.
     """
 
     name: str
@@ -96,7 +111,12 @@ class Matrix:
 
 @dataclass(frozen=True)
 class EquationRow:
-    """One equation; without a left side it goes on from the one before."""
+    """One equation; an empty left side continues the one before.
+
+    Attributes:
+        left, right: the two sides.
+        sign: the sign between them.
+    """
 
     left: Math
     right: Math
@@ -105,14 +125,23 @@ class EquationRow:
 
 @dataclass(frozen=True)
 class Formulas:
-    """Equations below each other."""
+    """Equations, one below the other.
+
+    Attributes:
+        rows: the equations.
+    """
 
     rows: tuple[EquationRow, ...]
 
 
 @dataclass(frozen=True)
 class Group:
-    """Named intermediates that belong together."""
+    """Named intermediates that belong together.
+
+    Attributes:
+        label: the joint or body they belong to.
+        rows: their definitions.
+    """
 
     label: str
     rows: tuple[EquationRow, ...]
@@ -120,14 +149,24 @@ class Group:
 
 @dataclass(frozen=True)
 class IntermediateList:
-    """Intermediates in the order in which they are computed."""
+    """Intermediates in the order in which they are computed.
+
+    Attributes:
+        groups: the intermediates, by joint or body.
+    """
 
     groups: tuple[Group, ...]
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A drawing, and the graph it is of, for where no drawing can be shown."""
+    """A drawing.
+
+    Attributes:
+        scene: the drawing.
+        about: its caption.
+        topology: the graph it shows, for formats without drawings; None for a sketch.
+    """
 
     scene: Scene
     about: str
@@ -136,7 +175,12 @@ class Picture:
 
 @dataclass(frozen=True)
 class Section:
-    """A heading and what stands under it."""
+    """A heading with the blocks below it.
+
+    Attributes:
+        title: the heading.
+        blocks: paragraphs, tables, formulas and further sections.
+    """
 
     title: str
     blocks: tuple[Block, ...]
@@ -149,22 +193,29 @@ Block: TypeAlias = (
 
 @dataclass(frozen=True)
 class Document:
-    """A report."""
+    """A report in no particular format.
+
+    Attributes:
+        title: its heading.
+        about: description of the model.
+        sections: its content.
+        source: note about the file it was derived from, in small print.
+    """
 
     title: str
     about: str
     sections: tuple[Section, ...]
     source: str = ""
-    """What it was made from, in small print."""
+    """Note about the file it was derived from, in small print."""
 
 
 def said(*text: Inline) -> Paragraph:
-    """A paragraph."""
+    """Make a paragraph of words, names and formulas."""
     return Paragraph(text)
 
 
 def formulas(blocks: tuple[Block, ...]) -> Iterator[Math]:
-    """Every formula in some blocks."""
+    """All formulas in some blocks, in order."""
     for block in blocks:
         match block:
             case Paragraph(text):

@@ -1,4 +1,4 @@
-"""The equations of motion: in closed form where they are short, else by named intermediates."""
+"""The equations of motion: in closed form if short, else with named intermediates."""
 
 from __future__ import annotations
 
@@ -42,45 +42,49 @@ if TYPE_CHECKING:
     from linegraph.report.subject import Subject
 
 MOST_OPERATIONS = 250
-"""Of more operations of the expression graph than these there are no closed forms: they would be too long."""
+"""Largest number of operations of quantities for which closed forms are tried."""
 
 MOST_PRODUCTS = 3000
-"""Of more products of two terms than a quantity takes to be put together there is no closed form, either."""
+"""Largest number of products of two terms spent on one quantity's closed form."""
 
 MOST_PRINTED = 3600
-"""Characters of closed forms that a person still reads: of M and h, of φ, J and γ, of all reactions."""
+"""Largest number of readable characters: of M and h, of φ, J and γ, of all reactions."""
 
 MOST_LEAVES, MOST_WRITTEN = 2000, 40000
-"""Symbols and numbers of an effort, and characters of all as trees, that are written beside named parts."""
+"""Largest number of symbols and numbers of an effort, and of characters of all efforts."""
 
 WIDEST_PIECE = 84
-"""A closed form is not readable that has a part of more characters without a place to break the line."""
+"""Largest number of characters of a readable closed form without a possible line break."""
 
 WIDEST_GRID = 72
-"""A matrix of more characters than this across is written entry by entry."""
+"""A wider matrix (characters) is written entry by entry."""
 
 
 class Forms:
-    """The equations of motion of a subject."""
+    """The equations of motion of a report, in the sections that follow the principle."""
 
     def __init__(self, subject: Subject, tell: Callable[[str], None]) -> None:
-        """Count operations; nothing is simplified before it is asked for."""
-        self._subject = subject
-        self._tell = tell
+        """Count operations; closed forms are computed on demand.
+
+        Args:
+            subject: the derivation and its notation.
+            tell: called with a short text at each stage.
+        """
+        self._subject, self._tell = subject, tell
         self._functions = subject.equations
 
     # -- how long they are
 
     @cached_property
     def short(self) -> bool:
-        """Whether M and h are written in closed form."""
+        """Whether M and h are short enough for closed form."""
         f = self._functions
         entries = (*f.mass_result.entries, *f.bias_beside_mass.entries)
         return self._readable(entries, lambda: [self.closed.mass_matrix, self.closed.bias])
 
     @cached_property
     def short_constraints(self) -> bool:
-        """Whether φ, J and γ are."""
+        """Whether φ, J and γ are short enough for closed form."""
         f = self._functions
         entries = [*f.constraints, *(x for row in f.jacobian for x in row), *f.constraint_bias]
         form = self.closed
@@ -90,14 +94,14 @@ class Forms:
 
     @cached_property
     def short_reactions(self) -> bool:
-        """Whether reactions are."""
+        """Whether reactions are short enough for closed form."""
         names = [joint.name for joint in self._subject.model.joints]
         scheme = self._functions.edges
         entries = [x for n in names for part in scheme.reaction(n) for x in part]
         return self._readable(entries, lambda: [x for n in names for x in self.closed.reaction(n)])
 
     def _readable(self, entries: Sequence[Any], closed: Callable[[], list[Any]]) -> bool:
-        """By the number of operations first, since closed forms of many take long to find."""
+        """Whether closed forms are readable; operations are counted first, which costs less."""
         result = Result("", (len(entries),), tuple(entries), "")
         if operations_of((result,)) > MOST_OPERATIONS:
             return False
@@ -112,7 +116,7 @@ class Forms:
 
     @cached_property
     def _energies(self) -> tuple[Any, ...]:
-        """Kinetic and potential energy and what networks store; none where they are too long."""
+        """Kinetic, potential and stored energy; empty if too long."""
         try:
             found = tuple(self.closed.energy)
         except ModelError:
@@ -124,19 +128,19 @@ class Forms:
 
     @cached_property
     def closed(self) -> Any:
-        """The derivation over sympy, simplified as far as asked for."""
+        """Closed forms of the derivation, simplified to the requested level."""
         return self._subject.derivation.closed_form(
             self._subject.level, budget=MOST_PRODUCTS, progress=self._tell
         )
 
     def tree(self, expression: Any) -> Math:
-        """An expression as a formula."""
+        """Convert a SymPy expression to a formula."""
         return self._subject.look.tree(self._subject.valued(expression))
 
     # -- sections
 
     def sections(self) -> list[Section]:
-        """M, h, Q, then constraints, equations written out, energy, reactions."""
+        """Sections on M, h and Q, constraints, scalar equations, energy and reactions."""
         found = [self._motion()]
         if self._subject.tree.closed:
             found.append(self._loops())
@@ -176,9 +180,9 @@ class Forms:
         return self._subject.tree.closed and not self.short_constraints
 
     def _forces(self) -> list[Block]:
-        """Q of a long system: mostly an effort for each row."""
+        """Q of a long system: mostly one effort in each row."""
         efforts = self._functions.forces
-        # counted first: written out, a few hundred shared operations may be millions
+        # Count first: expanded, a few hundred shared operations may become millions.
         entries = [self._nodes(x, entries=True) for x in efforts if leaves(x) <= MOST_LEAVES]
         if len(entries) < len(efforts) or len(str(entries)) > MOST_WRITTEN:
             return [said("Q is listed with the functions that `emit` writes.")]
@@ -201,7 +205,7 @@ class Forms:
         return [said(text), listing, said("With these"), Formulas(tuple(results))]
 
     def _matrix(self, name: str, matrix: Any, *, symmetric: bool = False) -> list[Block]:
-        """A matrix as a whole where it fits, else entry by entry; zeros are not written then."""
+        """A matrix as a whole if it fits, else the entries that are not zero."""
         tree = self.tree(matrix)
         assert isinstance(tree, Grid)
         if not tree.rows:
@@ -228,7 +232,7 @@ class Forms:
         return [Formulas(tuple(rows)), *([said(about)] if about else [])]
 
     def _rates(self) -> list[Block]:
-        """``q̇ = N v`` where it is not ``v = q̇``."""
+        """``q̇ = N v``, unless v are the rates of q."""
         subject = self._subject
         plain = [f"{q}_dot" for q in subject.q_names]
         if plain == subject.v_names[: len(plain)]:
@@ -292,7 +296,7 @@ class Forms:
         return [said(text)]
 
     def _written_out(self) -> Section:
-        """Row by row, accelerations and all."""
+        """The scalar equations, row by row."""
         subject, form = self._subject, self.closed
         M, h, Q = form.mass_matrix, form.bias, form.forces
         a = subject.symbols(subject.a_names)
@@ -366,7 +370,7 @@ class Forms:
 
 
 def _components(row: EquationRow) -> list[EquationRow]:
-    """A vector as one where it fits, else by components."""
+    """A vector as a whole if it fits, else its components."""
     assert isinstance(row.right, Grid)
     assert isinstance(row.left, Name)
     if len(Plain()(row.right)) <= WIDEST_GRID:
@@ -380,7 +384,7 @@ def _components(row: EquationRow) -> list[EquationRow]:
 
 
 def _times(entry: Math, by: Math) -> Math:
-    """An entry of a matrix times a variable, factored forms kept."""
+    """An entry of a matrix times a variable; factored forms are kept."""
     return by if entry == ONE else product([entry, by]) if not _sum(entry) else _signed(entry, by)
 
 

@@ -1,4 +1,4 @@
-"""The graphs: of the components, of the system in each subspace, their incidence, cutsets and circuits."""
+"""Sections on graphs: of components and of the system, with incidence, cutset and circuit equations."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ if TYPE_CHECKING:
     from linegraph.report.subject import Subject
 
 MOST_WRITTEN = 20
-"""Of a graph with more edges equations are read off their matrix, which is not repeated, either."""
+"""Largest number of edges of a graph whose equations are written out besides their matrix."""
 
 
 def topologies(subject: Subject) -> list[tuple[str, Topology]]:
-    """The tree of every subspace that has edges; once where two subspaces have the same."""
+    """The trees of all subspaces with edges; equal ones are listed once."""
     return [
         (" and ".join(map(called, names)), topology)
         for names, topology in chosen_panels(subject.derivation)
@@ -50,7 +50,7 @@ def called(domain: str) -> str:
 
 
 def terminal_graphs(subject: Subject) -> Section:
-    """The edges of every component."""
+    """The section that lists the edges of every component."""
     order: dict[str, dict[str, tuple[Edge, list[str]]]] = {}
     for projection in subject.derivation.graph.projections:
         for edge in projection.edges:
@@ -80,7 +80,7 @@ def terminal_graphs(subject: Subject) -> Section:
 
 
 def system_graph(subject: Subject) -> Section:
-    """The united graph, subspace by subspace."""
+    """The section on the system graph, subspace by subspace."""
     text = (
         "Terminals of one name are one vertex: so the terminal graphs unite to the system graph, which has "
         "one part for each subspace."
@@ -92,7 +92,7 @@ def system_graph(subject: Subject) -> Section:
 
 
 def _mechanism(subject: Subject) -> list[Block]:
-    """The mechanism as it stands; none where parameters have no values."""
+    """A sketch of the mechanism; a remark where parameters have no values."""
     if not subject.model.bodies:
         return []
     try:
@@ -128,7 +128,7 @@ def _incidence(projection: Projection) -> list[Block]:
 
 
 def topological(subject: Subject) -> Section:
-    """Cutset and circuit equations, written out and as matrices."""
+    """The section on cutset and circuit equations, written out and as matrices."""
     blocks: list[Block] = [
         said(
             "Cutting a branch separates the vertices beyond it: the through variables over the cut add up to "
@@ -172,7 +172,7 @@ def _matrices(topology: Topology, again: bool) -> list[Block]:
 
 
 def _as_matrices(subject: Subject, domain: str, topology: Topology, again: bool) -> list[Block]:
-    """Of a large graph the matrix, and how an equation is read off: written out they fill pages."""
+    """For a large graph the matrices and how to read an equation off them."""
     if again:
         through, across = subject.through(domain, ""), subject.across(domain, "")
         return [said(
@@ -200,19 +200,19 @@ def _as_matrices(subject: Subject, domain: str, topology: Topology, again: bool)
 
 
 def _length(row: EquationRow) -> int:
-    """Summands, at least two."""
+    """Number of summands; a single one counts as many."""
     return len(getattr(row.left, "terms", ())) or MOST_WRITTEN
 
 
 def _cut(subject: Subject, domain: str, topology: Topology, row: int) -> EquationRow:
-    """A cutset equation."""
+    """The cutset equation of a branch."""
     first = subject.through(domain, topology.cutset.rows[row])
     of = partial(subject.through, domain)
     return EquationRow(subject.combined(topology.cutset, row, first, of), ZERO)
 
 
 def _circuit(subject: Subject, domain: str, topology: Topology, row: int) -> EquationRow:
-    """A circuit equation."""
+    """The circuit equation of a chord."""
     first = subject.across(domain, topology.circuit.rows[row])
     of = partial(subject.across, domain)
     return EquationRow(subject.combined(topology.circuit, row, first, of), ZERO)

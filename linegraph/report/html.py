@@ -1,7 +1,7 @@
-"""A report as one HTML file: MathML, SVG and style in it, no script, nothing fetched.
+"""A report as one HTML file with MathML, SVG and style sheet; without scripts and external files.
 
-A browser breaks no line inside a ``math`` element, so a long formula is a row of several of them, one for
-each summand: it wraps like words, on a narrow screen and on paper.
+Browsers break no lines inside a ``math`` element. A long formula is therefore a sequence of elements, one
+for each summand, and wraps like words on screen and paper.
 """
 
 from __future__ import annotations
@@ -38,14 +38,14 @@ if TYPE_CHECKING:
 
 MOST_COLUMNS = 28
 MANY = 12
-"""So many short formulas stand in columns."""
+"""Least number of short formulas that are set in columns."""
 
 SHORT = 44
-"""A formula of so many characters stays in one piece."""
+"""Formulas of at most this many characters are not broken."""
 
 
 def render(document: Document) -> str:
-    """The text of a report."""
+    """Write a report as an HTML file."""
     body = [f"<h1>{shown(document.title)}</h1>"]
     if document.about:
         body.append(f'<p class="about">{shown(document.about)}</p>')
@@ -73,7 +73,7 @@ def render(document: Document) -> str:
 
 
 def shown(text: str) -> str:
-    """Any text as words."""
+    """Escape any text for use as words."""
     return escape(visible(text))
 
 
@@ -126,7 +126,7 @@ def _block(block: Block) -> Iterator[str]:
 
 
 def said(text: Text) -> str:
-    """Words, names and formulas in a line."""
+    """Write words, names and formulas of one line."""
     return "".join(_inline(part) for part in text)
 
 
@@ -139,7 +139,7 @@ def _inline(part: object) -> str:
 
 
 def breakable(text: str) -> str:
-    """A name that may be broken behind its strokes and points."""
+    """Escape a name, with possible line breaks after slashes, dots and underscores."""
     found = shown(text)
     for stop in ("/", ".", "_"):
         found = found.replace(stop, f"{stop}<wbr/>")
@@ -147,7 +147,7 @@ def breakable(text: str) -> str:
 
 
 def _running(tree: Math) -> str:
-    """A formula among words, in pieces where it is long."""
+    """A formula in running text, in pieces if it is long."""
     return "<wbr/>".join(f"<math>{piece}</math>" for piece in _pieces(tree))
 
 
@@ -180,7 +180,7 @@ def _table(head: Sequence[str], rows: Sequence[Sequence[Text]]) -> Iterator[str]
 
 
 def _matrix(matrix: IntegerMatrix) -> Iterator[str]:
-    """With names along both sides, those of columns upright; wide ones row by row."""
+    """A matrix with upright names of columns; wide ones row by row."""
     if not matrix.rows or not matrix.columns:
         yield "<p>(empty)</p>"
         return

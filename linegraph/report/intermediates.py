@@ -1,4 +1,4 @@
-"""Long equations as a person can follow them: named intermediates, grouped by joint and body."""
+"""Long equations in readable form: named intermediates, grouped by joint and body."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ ONLY = {
     "constraints": ("constraints", CONSTRAINTS),
     "reactions": ("reactions", ("reactions_at",)),
 }
-"""For each listing the functions to derive, and which of them are shown."""
+"""For each listing the functions to derive, and those of them to show."""
 
 ENTRIES = {"q": "q", "v": "v", "a": "v", "u": "u"}
-"""Letters of the columns whose entries the table of coordinates numbers."""
+"""Letters of vectors whose entries are numbered in the table of coordinates."""
 
 LETTERS = {"gamma": "γ", "gam": "γ", "phi": "φ"}
 
 
 def symbols_of(subject: Subject, *, entries: bool = False) -> Callable[[str, Any], Math]:
-    """The look of the symbols that programs read.
+    """Return a function that typesets the symbols of programs.
 
     Args:
-        subject: what is reported on.
-        entries: write q, v, v̇ and u by their places, as long listings need it.
+        subject: the derivation with its notation.
+        entries: whether q, v, v̇ and u are written as numbered entries, for long listings.
     """
     arguments = {
         "q": subject.q_names,
@@ -70,7 +70,15 @@ def symbols_of(subject: Subject, *, entries: bool = False) -> Callable[[str, Any
 
 
 def listed_program(subject: Subject, which: str) -> tuple[IntermediateList, list[EquationRow], int]:
-    """The steps of a program, its results, and how many operations it has."""
+    """List the steps of a program.
+
+    Args:
+        subject: the derivation with its notation.
+        which: a key of `ONLY`.
+
+    Returns:
+        The intermediates, the results in terms of them, and the number of operations.
+    """
     only, shown = ONLY[which]
     module = module_of(
         subject.derivation,
@@ -92,7 +100,7 @@ def listed_program(subject: Subject, which: str) -> tuple[IntermediateList, list
 
 
 class _Steps:
-    """Names steps in order, through several programs."""
+    """Names intermediates in order, continuing through several programs."""
 
     def __init__(self, subject: Subject) -> None:
         self._subject = subject
@@ -109,9 +117,9 @@ class _Steps:
         self._known: dict[tuple[int, bool], Name] = {}
 
     def groups(self, program: Program) -> list[Group]:
-        """The steps of a program under their labels."""
+        """The steps of a program by label, without those named before."""
         self._nodes = Nodes(self._symbol, program.turned)
-        # programs share nodes: what has a name already keeps it
+        # Programs share nodes: a node that has a name keeps it.
         for (index, turned), name in self._known.items():
             if turned == (index in program.turned):
                 self._nodes.known[index] = name
@@ -136,7 +144,7 @@ class _Steps:
         return Name(self._letter, (str(self._count),), place=self._count)
 
     def results(self, program: Program) -> list[EquationRow]:
-        """What a program returns; what is zero, or stands there already, is left out."""
+        """Results of a program, without zeros and the lower half of symmetric matrices."""
         rows = []
         for result in program.results:
             columns = result.shape[1] if len(result.shape) > 1 else 0
@@ -162,7 +170,7 @@ class _Steps:
         return Name(letter, (str(i + 1), str(j + 1)) if square else (str(i + 1),))
 
     def _reaction(self, place: int) -> Name:
-        """Of each joint force and torque, then what flows through the edges of networks."""
+        """Symbol of a reaction: force and torque of each joint, then through variables of networks."""
         joints, network = list(self._subject.tree.ends), self._subject.network
         joint, component = divmod(place, 6)
         if joint < len(joints):

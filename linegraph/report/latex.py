@@ -1,4 +1,4 @@
-"""A report as a LaTeX article; it needs amsmath, booktabs and the like, and no file but itself."""
+"""A report as a LaTeX article that uses amsmath, booktabs and similar packages, and no other file."""
 
 from __future__ import annotations
 
@@ -34,17 +34,17 @@ if TYPE_CHECKING:
     from linegraph.graph.multigraph import IntegerMatrix
 
 WIDTH = 84
-"""Characters of plain text that a line of formulas holds."""
+"""Characters of plain text per line of formulas."""
 
 MOST_COLUMNS = 18
 NARROW = 16
-"""A column of so many characters is never broken."""
+"""Columns of at most this many characters are not broken."""
 
 MANY, HALF, THIRD = 12, 42, 28
-"""So many equations of so few characters stand in two columns; steps without a longer part in three."""
+"""Least number of equations set in columns, and their largest widths for two and for three columns."""
 
 WIDE, HIGH, LOW = 472, 560, 270
-"""The place of a picture in points: its width, its height for a graph, its height for a sketch."""
+"""Space for a picture in points: width, height of a graph, height of a sketch."""
 
 LEVELS = ("section", "subsection", "subsubsection", "paragraph")
 
@@ -77,7 +77,7 @@ HEAD = r"""\documentclass[11pt,a4paper,fleqn]{article}
 
 
 def render(document: Document) -> str:
-    """The text of a report."""
+    """Write a report as a LaTeX file."""
     lines = [
         HEAD + PREAMBLE + rf"\title{{{escaped(document.title)}}}",
         r"\author{}",
@@ -104,7 +104,7 @@ def _section(section: Section, depth: int) -> list[str]:
         if isinstance(block, Section):
             lines += _section(block, depth + 1)
         else:
-            # a display without an empty line before it belongs to its paragraph
+            # Without an empty line before it, a display belongs to the paragraph above.
             lines += [*([] if isinstance(block, Formulas) else [""]), *_block(block)]
     return lines
 
@@ -133,7 +133,7 @@ def _block(block: Block) -> list[str]:
 
 
 def said(text: Text) -> str:
-    """Words, names and formulas in a line."""
+    """Write words, names and formulas of one line."""
     return "".join(_inline(part) for part in text)
 
 
@@ -149,7 +149,7 @@ def _inline(part: object) -> str:
 
 
 def breakable(text: str) -> str:
-    """A name that may be broken behind its strokes and points."""
+    """Escape a name, with possible line breaks after slashes, dots and underscores."""
     shown = escaped(text)
     for stop in ("/", ".", r"\_"):
         shown = shown.replace(stop, rf"{stop}\allowbreak{{}}")
@@ -157,7 +157,14 @@ def breakable(text: str) -> str:
 
 
 def aligned(rows: Sequence[EquationRow], width: int) -> list[str]:
-    """Equations below each other, long ones broken; aligned at their signs where the left sides are short."""
+    """Write equations one below the other, long ones broken over lines.
+
+    They are aligned at their signs if all left sides are names.
+
+    Args:
+        rows: the equations.
+        width: characters of plain text per line.
+    """
     level = all(isinstance(row.left, Name) for row in rows)
     lines: list[str] = []
     for k, row in enumerate(rows):
@@ -168,7 +175,7 @@ def aligned(rows: Sequence[EquationRow], width: int) -> list[str]:
 
 
 def _named(row: EquationRow, width: int) -> list[str]:
-    """A name and what it is."""
+    """A name and its definition."""
     used = typeset(Plain()(row.left)) + 3
     first, *others = broken(row.right, Latex(), width - 4, max(0, used - 4), typeset)
     left = Latex()(row.left)
@@ -176,7 +183,7 @@ def _named(row: EquationRow, width: int) -> list[str]:
 
 
 def _broken(row: EquationRow, width: int) -> list[str]:
-    """Both sides in a row."""
+    """An equation whose sides may both be long."""
     lines = broken(row.left, Latex(), width - 4, 0, typeset)
     used = typeset(Plain()(row.left)) + 3 if len(lines) == 1 else width // 2
     first, *others = broken(row.right, Latex(), width - 4, min(used, width - 8), typeset)
@@ -194,7 +201,7 @@ def _display(rows: Sequence[EquationRow]) -> list[str]:
 
 
 def _listing(groups: Sequence[Group]) -> list[str]:
-    """Steps in columns, small: TeX breaks them where it finds room."""
+    """Intermediates in columns, in small print."""
     rows = [row for group in groups for row in group.rows]
     columns = 3 if max(map(_solid, rows), default=0) <= THIRD else 2
     lines = [
@@ -209,7 +216,7 @@ def _listing(groups: Sequence[Group]) -> list[str]:
 
 
 def _solid(row: EquationRow) -> int:
-    """The longest part in which TeX finds no place to break."""
+    """Width of the longest part without a possible line break."""
     return max(typeset(piece) for _, piece in pieces(Plain().marked(row.right)))
 
 
@@ -233,7 +240,7 @@ def _table(head: Sequence[str], rows: Sequence[Sequence[Text]]) -> list[str]:
 
 
 def _widths(head: Sequence[str], rows: Sequence[Sequence[Text]]) -> list[float]:
-    """Of each column its share of the line: narrow ones as wide as they are, the others what is left."""
+    """Share of each column in the line: narrow ones get their width, the others share the rest."""
     longest = [
         max([len(title), 3, *(len(plain(row[j])) for row in rows)]) for j, title in enumerate(head)
     ]
@@ -254,7 +261,7 @@ def _widths(head: Sequence[str], rows: Sequence[Sequence[Text]]) -> list[float]:
 
 
 def _matrix(matrix: IntegerMatrix) -> list[str]:
-    """With names along both sides, those of columns upright; wide ones row by row."""
+    """A matrix with upright names of columns; wide ones row by row."""
     if not matrix.rows or not matrix.columns:
         return ["(empty)"]
     if len(matrix.columns) > MOST_COLUMNS:

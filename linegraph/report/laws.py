@@ -1,4 +1,4 @@
-"""Terminal equations: what each component's law is, inside its own edges."""
+"""Section on terminal equations: the law of each component, in the variables of its edges."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ from linegraph.report.system import letter
 from linegraph.spatial.vector import times
 
 LONGEST_CELL = 60
-"""Motions of joints that take more characters stand below their table."""
+"""Motions of joints longer than this (characters) are placed below their table."""
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -54,22 +54,39 @@ if TYPE_CHECKING:
 
 
 def vector(text: str, edge: str, *, dots: int = 0, before: str = "") -> Name:
-    """A vector of an edge."""
+    """Symbol of a vector of an edge.
+
+    Args:
+        text: the letter.
+        edge: the edge, as subscript.
+        dots: number of dots.
+        before: sign before the letter, such as δ.
+    """
     return Name(text, (edge,), dots=dots, bold=True, before=before)
 
 
 def dotted(left: Math, right: Math) -> Math:
-    """A scalar product."""
+    """The scalar product of two vectors.
+
+    Args:
+        left: the first vector.
+        right: the second vector.
+    """
     return Product((left, right), "·")
 
 
 def crossed(left: Math, right: Math) -> Math:
-    """A vector product."""
+    """The vector product of two vectors.
+
+    Args:
+        left: the first vector.
+        right: the second vector.
+    """
     return Product((left, right), "×")
 
 
 def terminal_equations(subject: Subject) -> Section:
-    """The laws of all components."""
+    """The section on the laws of all components."""
     blocks: list[Block] = [
         said(
             "Terminal equations tie the across variables of a component's edges to their through variables."
@@ -134,7 +151,7 @@ def _joints(subject: Subject) -> tuple[Block, ...]:
 
 
 def _by_components(part: TwoSides) -> list[EquationRow]:
-    """A vector that is too long for a cell, component by component."""
+    """A vector that is too long for a cell, as equations of its components."""
     assert isinstance(part.left, Name)
     assert isinstance(part.right, Components)
     subs = ((*part.left.subs, axis) for axis in "xyz")
@@ -145,7 +162,7 @@ def _by_components(part: TwoSides) -> list[EquationRow]:
 
 
 def _joint(subject: Subject, joint: Joint) -> tuple[Text, Text]:
-    """The relative motion of a joint in its head's axes, and what its through variables are along it."""
+    """Relative motion of a joint in its head's axes, and its through variables along the motion."""
     own = joint.resolved(subject.resolve)
     names = [quantity.name for quantity in joint.positions()]
     rates = [_rate(subject, quantity.name, names) for quantity in joint.velocities()]
@@ -233,12 +250,20 @@ def _element(subject: Subject, element: Element) -> EquationRow:
 
 
 def pull_of(element: str) -> Name:
-    """The through variable of a force element."""
+    """Symbol of the through variable of a force element."""
     return Name("y", (element,))
 
 
 def element_motion(subject: Subject, element: Element) -> tuple[Any, Any]:
-    """Symbols of an element's across variable and of its rate."""
+    """Symbols of a force element's across variable and of its rate.
+
+    Args:
+        subject: the derivation with its notation; receives the look of the symbols.
+        element: the element, in a joint or between two points.
+
+    Returns:
+        Coordinate or length, and its rate.
+    """
     if element.joint is not None:
         joint = next(j for j in subject.model.joints if j.name == element.joint)
         name = joint.positions()[0].name
@@ -264,7 +289,7 @@ def _load(subject: Subject, load: Load) -> list[EquationRow]:
 
 
 def network_laws(subject: Subject) -> list[Block]:
-    """Laws of all components, by component."""
+    """Laws of all components of networks, in declared order."""
     network = subject.network
     assert network is not None
     branch = {b.name: b for b in network.branches}
@@ -286,7 +311,7 @@ def network_laws(subject: Subject) -> list[Block]:
 
 
 def _solved(trees: Nodes, zero: Any) -> EquationRow:
-    """``X = ...`` where a law is the difference of a variable and something."""
+    """A law as ``X = ...`` if it is the difference of a variable and an expression."""
     if isinstance(zero, Node) and zero.op == SUB and isinstance(zero.a, Node):
         a, b = zero.a, zero.b
         if a.op == SYMBOL and a.a in ("X", "Y", "w"):
@@ -295,14 +320,19 @@ def _solved(trees: Nodes, zero: Any) -> EquationRow:
 
 
 def port_variables(subject: Subject, branch: Branch) -> tuple[Math, Math]:
-    """Across and through variable of any edge of a network."""
+    """Symbols of an edge's across and through variable.
+
+    Args:
+        subject: the derivation with its notation.
+        branch: an edge of a network, which may act in mechanics.
+    """
     names = {branch.name: branch}
     kind = "w" if branch.port.spatial else "X"
     return _symbol(subject, names, kind, branch.name), _symbol(subject, names, "Y", branch.name)
 
 
 def _symbol(subject: Subject, branches: dict[str, Branch], kind: str, place: Any) -> Math:
-    """A symbol of a network's DAG."""
+    """Typeset a symbol of a network's DAG."""
     assert subject.network is not None
     if kind == CONSTANT:
         return number(float(Fraction(place)))

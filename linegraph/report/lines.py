@@ -1,4 +1,4 @@
-"""Equations too long for a line, broken before + and - where the fewest brackets are open."""
+"""Line breaks in equations, before + and - where the fewest brackets are open."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SUBSCRIPTS = re.compile(r"_[\w/.]+")
 
 
 def typeset(text: str) -> int:
-    """The width of plain text where subscripts are small."""
+    """Width of plain text in characters, with subscripts counted as narrower."""
     small = sum(len(found) for found in _SUBSCRIPTS.findall(text))
     return len(text) - small // 4
 
@@ -31,14 +31,17 @@ def broken(
     first: int = 0,
     measure: Callable[[str], int] = len,
 ) -> list[str]:
-    """A formula in lines.
+    """Break a formula into lines.
 
     Args:
         tree: the formula.
-        writer: what writes it.
-        width: characters of plain text that a line holds.
-        first: how many of them are taken on the first line.
-        measure: the width of some plain text.
+        writer: writes it in the format of the report.
+        width: characters of plain text per line.
+        first: characters already used in the first line.
+        measure: returns the width of plain text.
+
+    Returns:
+        The lines, in the format of the writer.
     """
     text, plain = pieces(writer.marked(tree)), pieces(Plain().marked(tree))
     if len(text) != len(plain):
@@ -54,7 +57,7 @@ def broken(
 
 
 def _end(text: list[tuple[int, str]], sizes: list[int], start: int, room: int) -> int:
-    """Where a line ends: as late as it holds, but rather outside brackets if it is half full there."""
+    """End of a line: as late as possible, but outside brackets if the line is half full there."""
     total, last = 0, start
     while last < len(text) and (last == start or total + sizes[last] <= room):
         total += sizes[last]

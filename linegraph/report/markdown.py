@@ -1,4 +1,4 @@
-"""A report in Markdown as GitHub reads it: formulas between dollars, graphs as Mermaid diagrams."""
+"""A report in GitHub's Markdown: formulas between dollar signs, graphs as Mermaid diagrams."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _SPECIAL = re.compile(r"([\\`*_{}\[\]<>()#+.!|~$&^-])")
 
 
 def render(document: Document) -> str:
-    """The text of a report."""
+    """Write a report as Markdown."""
     parts = [f"# {words(document.title)}"]
     if document.about:
         parts.append(words(document.about))
@@ -45,7 +45,7 @@ def render(document: Document) -> str:
 
 
 def words(text: str) -> str:
-    """Any text as words: nothing in it is markup, in Markdown or in HTML."""
+    """Escape any text for use as words, so that nothing in it is Markdown or HTML."""
     return _SPECIAL.sub(_harmless, visible(text))
 
 
@@ -55,7 +55,7 @@ def _harmless(found: re.Match[str]) -> str:
 
 
 def code(text: str) -> str:
-    """Any text as code; backticks in it get longer ones around it."""
+    """Write any text as code; backticks in it get longer ones around it."""
     shown = visible(text).replace("|", "¦")
     if not shown:
         return ""
@@ -91,7 +91,7 @@ def _block(block: Block) -> str:
 
 
 def said(text: Text) -> str:
-    """Words, names and formulas in a line."""
+    """Write words, names and formulas of one line."""
     return "".join(_inline(part) for part in text)
 
 
@@ -106,13 +106,13 @@ def _inline(part: object) -> str:
 
 
 def _spoken(found: re.Match[str]) -> str:
-    """Of words only what could be markup is escaped."""
+    """Escape only those characters of running text that could be markup."""
     letter = found[0]
     return letter if letter in "().+-!&" else _harmless(found)
 
 
 def safe(latex: str) -> str:
-    """LaTeX that Markdown leaves alone: no backslash before punctuation, no bars of tables."""
+    """Rewrite LaTeX that Markdown would change: backslashes before punctuation, and bars."""
     return (
         latex.replace(r"\,", r"\thinspace ")
         .replace(r"\\", r"\cr ")
@@ -137,7 +137,7 @@ def _table(head: tuple[str, ...], rows: tuple[tuple[Text, ...], ...]) -> str:
 
 
 def _diagram(picture: Picture) -> str:
-    """A Mermaid graph; branches are thick."""
+    """A Mermaid diagram with thick branches."""
     topology: Topology = picture.topology  # type: ignore[assignment]
     branches = {edge.name for edge in topology.branches}
     place = {vertex: f"v{k}" for k, vertex in enumerate(topology.projection.vertices)}
@@ -150,7 +150,7 @@ def _diagram(picture: Picture) -> str:
 
 
 def label(text: str) -> str:
-    """Any text in a Mermaid label: letters and digits as they are, all else by number."""
+    """Escape any text for a Mermaid label: all but letters and digits by number."""
     return "".join(
         c if (c.isalnum() and c.isascii()) or c in " ._/" else f"#{ord(c)};" for c in visible(text)
     )

@@ -1,4 +1,4 @@
-"""Motion in terms of the velocities: of bodies as sums along the tree, of mass centres in closed form."""
+"""Motion in terms of velocities: of bodies as sums along the tree, of mass centres in closed form."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ if TYPE_CHECKING:
     from linegraph.report.subject import Subject
 
 MOST_OPERATIONS = 150
-"""Of more operations than these the motion of mass centres is not put together."""
+"""Largest number of operations for which closed forms of mass centres are tried."""
 
 MOST_PRODUCTS = 1000
-"""Of more products of two terms it is not, either."""
+"""Largest number of products of two terms spent on them."""
 
 MOST_PRINTED, LONGEST = 900, 280
-"""Characters of positions and velocities that a person still reads: of all, and of one vector."""
+"""Largest number of readable characters of positions and velocities: of all, and of one vector."""
 
 LONGEST_WAY = 3
-"""Of more joints on the way to ground those before a body are put together in its own motion."""
+"""Largest number of joints in a sum; beyond it the motion of a nearer body is used."""
 
 WIDEST = 76
 """A vector of more characters is written by components."""
 
 
 def motion(subject: Subject) -> tuple[Block, ...]:
-    """Angular velocities of bodies as sums along the tree; mass centres as sums, and put together."""
+    """Angular velocities of bodies as sums along the tree; mass centres as sums and in closed form."""
     rows = []
     derivation = subject.derivation
     paths: dict[str, list[tuple[bool, Math]]] = {}
@@ -65,7 +65,7 @@ def motion(subject: Subject) -> tuple[Block, ...]:
 
 
 def centers(subject: Subject) -> list[Block]:
-    """Where mass centres are and how they move, in the axes of ground; nothing where that is long."""
+    """Positions and velocities of mass centres in ground axes; empty if they are long."""
     found = [row for row in _rows(subject) if len(Plain()(row.right)) <= LONGEST]
     length = sum(len(Plain()(row.right)) for row in found)
     if not found or length > MOST_PRINTED:
@@ -78,7 +78,7 @@ def centers(subject: Subject) -> list[Block]:
 
 
 def _rows(subject: Subject) -> list[EquationRow]:
-    """The place and the velocity of every mass centre; none where they have too many terms."""
+    """Position and velocity of every mass centre; empty if they have too many terms."""
     scheme = subject.equations.edges
     frames = {body: scheme.center(body) for body in subject.model.bodies}
     entries = [x for frame in frames.values() for x in (*frame.origin, *frame.linear)]
@@ -111,7 +111,7 @@ def _vector(entries: list[Math]) -> Math:
 
 
 def _by_components(row: EquationRow) -> list[EquationRow]:
-    """A vector as one where it fits, else those of its components that are not zero."""
+    """A vector as a whole if it fits, else its components that are not zero."""
     if not isinstance(row.right, Components) or len(Plain()(row.right)) <= WIDEST:
         return [row]
     assert isinstance(row.left, Name)

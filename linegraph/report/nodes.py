@@ -1,4 +1,4 @@
-"""Nodes of the expression DAG as formulas."""
+"""Formulas from nodes of the expression DAG."""
 
 from __future__ import annotations
 
@@ -24,23 +24,26 @@ if TYPE_CHECKING:
 
 
 class Nodes:
-    """Turns nodes into trees.
+    """Converts nodes to formulas.
 
     Args:
-        symbol: the look of a symbol, by the argument it is of and its place there.
-        turned: nodes ``a - b`` of which only the negative is used.
+        symbol: typesets a symbol, given its argument and its place in it.
+        turned: indices of nodes ``a - b`` of which only the negative is used.
+
+    Attributes:
+        known: names of nodes by index.
     """
 
     def __init__(
         self, symbol: Callable[[str, Any], Math], turned: Container[int] = frozenset()
     ) -> None:
-        """Nothing has a name yet."""
+        """Start without named nodes."""
         self._symbol = symbol
         self._turned = turned
         self.known: dict[int, Math] = {}
 
     def __call__(self, x: Any) -> Math:
-        """An operand: a named node by its name."""
+        """Convert an operand; a named node becomes its name."""
         if not isinstance(x, Node):
             whole = float(x).is_integer() and abs(x) < 1e6
             return number(int(x) if whole else float(x))
@@ -48,7 +51,7 @@ class Nodes:
         return self.expression(x) if found is None else found
 
     def expression(self, node: Node) -> Math:
-        """The operation itself, even of a named node."""
+        """Convert the operation of a node, even if the node has a name."""
         op, a, b = node.op, node.a, node.b
         if op == SYMBOL:
             return self._symbol(str(a), b)
@@ -74,14 +77,14 @@ class Nodes:
         return total(_cancelled([(False, self(a)), (node.op == SUB, self(b))]))
 
     def named(self, node: Node) -> Math:
-        """What a node is that is about to get a name: turned round where its negative is wanted."""
+        """Convert a node that is about to get a name, with opposite sign if only its negative is used."""
         if node.index in self._turned and node.op == SUB:
             return total([(False, self(node.b)), (True, self(node.a))])
         return self.expression(node)
 
     @staticmethod
     def _product(left: Math, right: Math) -> Math:
-        """Signs in front, equal factors as a power."""
+        """A product with its sign in front and equal factors as a power."""
         (negative, left), (other, right) = _unsigned(left), _unsigned(right)
         found = Power(left, number(2)) if left == right else product([left, right])
         return negated(found) if negative != other else found
@@ -94,7 +97,7 @@ class Nodes:
 
 
 def _cancelled(terms: list[tuple[bool, Math]]) -> list[tuple[bool, Math]]:
-    """Summands, those left out that stand there with both signs."""
+    """Summands without pairs of opposite sign."""
     flat: list[tuple[bool, Math]] = []
     for negative, term in terms:
         inner = term.terms if isinstance(term, Sum) else ((False, term),)

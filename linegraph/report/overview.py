@@ -1,4 +1,4 @@
-"""What a model is made of, as text: `linegraph show`."""
+"""The content of a model as text: `linegraph show`."""
 
 from __future__ import annotations
 
@@ -22,17 +22,20 @@ if TYPE_CHECKING:
     from linegraph.numeric.assembly import Assembly
 
 WIDEST_TABLE = 120
-"""A matrix wider than this many characters is written row by row as sums."""
+"""A matrix wider than this (characters) is written row by row as sums."""
 
 Lines = list[str]
 
 
 def show(derivation: Derivation, heading: Callable[[str], str] = str) -> str:
-    """Bodies, joints, domains, graph, tree, coordinates, cutset and circuit equations of a model.
+    """List bodies, joints, domains, graph, tree, coordinates, cutset and circuit equations of a model.
 
     Args:
         derivation: the derived model.
-        heading: how to decorate a heading, e.g. in bold on a terminal.
+        heading: how to mark a heading, such as bold on a terminal; by default unchanged.
+
+    Returns:
+        The text, with a blank line after each section.
     """
     tree = derivation.structure
     mechanics = bool(derivation.system.bodies)
@@ -61,7 +64,7 @@ def show(derivation: Derivation, heading: Callable[[str], str] = str) -> str:
 
 
 def _topological(topology: Topology, where: str) -> list[tuple[str, Lines]]:
-    """The cutset and the circuit matrix of a tree."""
+    """Cutset and circuit matrix of a tree."""
     return [
         (f"cutset equations{where} [U A] Y = 0: A, branches x chords", _matrix(topology.cutset)),
         (f"circuit equations{where} [B U] X = 0: B, chords x branches", _matrix(topology.circuit)),
@@ -69,7 +72,7 @@ def _topological(topology: Topology, where: str) -> list[tuple[str, Lines]]:
 
 
 def _networks(network: Network) -> list[tuple[str, Lines]]:
-    """The graph and the normal tree of each scalar subspace, and what to know of the states."""
+    """Graph and normal tree of each scalar subspace, with remarks on the states."""
     sections: list[tuple[str, Lines]] = []
     for topology in network.topologies:
         domain = topology.projection.domain
@@ -98,7 +101,7 @@ def _likeness(derivation: Derivation) -> str:
 
 
 def _in_rotation(derivation: Derivation) -> tuple[tuple[str, Lines], ...]:
-    """The cutset equations in rotation, where its tree is another."""
+    """Cutset equations in rotation, if the tree there differs."""
     rotation = derivation.formulation.rotation
     if not derivation.formulation.level:
         return ()
@@ -107,7 +110,15 @@ def _in_rotation(derivation: Derivation) -> tuple[tuple[str, Lines], ...]:
 
 
 def assembled(derivation: Derivation, found: Assembly) -> str:
-    """A position that closes all loops, and what the constraints are worth there."""
+    """List a position that closes all loops, with the rank of the constraints there.
+
+    Args:
+        derivation: the derived model.
+        found: the position.
+
+    Returns:
+        A table of coordinates (rad or m), then counts, ending in a newline.
+    """
     rows = [
         (f"q[{k}]", quantity.name, f"{value:.12g}", quantity.unit)
         for k, (quantity, value) in enumerate(

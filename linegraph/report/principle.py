@@ -1,4 +1,4 @@
-"""Connecting equations between the subspaces, and the orthogonality statement of this system."""
+"""Sections on the connecting equations and on the principle of orthogonality for this system."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
     from linegraph.report.subject import Subject
 
 MOST_EDGES = 16
-"""Of a graph with more edges than this, the sum over all of them is written with Σ."""
+"""For graphs with more edges the sum over all edges is written with Σ."""
 
 MOST_BODIES = 12
-"""Of more bodies than this the remaining sum is written with Σ."""
+"""For more bodies the remaining sum is written with Σ."""
 
 
 def connecting(subject: Subject) -> Section:
-    """How variables of different subspaces and of different kinds hang together."""
+    """The section on relations between variables of different subspaces and kinds."""
     blocks: list[Block] = [said("Connecting equations tie the subspaces to each other.")]
     if subject.model.bodies:
         blocks.append(Section("Translation and rotation", _arms(subject)))
@@ -46,7 +46,7 @@ def connecting(subject: Subject) -> Section:
 
 
 def _arms(subject: Subject) -> tuple[Block, ...]:
-    """An arm is a transformer between translation and rotation."""
+    """An arm as a transformer between translation and rotation."""
     arm, spin = Name("ρ", bold=True), Name("ω", bold=True)
     force, torque = Name("f", bold=True), Name("τ", bold=True)
     moment = Name("T", bold=True)
@@ -79,7 +79,7 @@ def _arms(subject: Subject) -> tuple[Block, ...]:
 
 
 def orthogonality(subject: Subject) -> Section:
-    """The principle, written with this system's names, and what is left of it."""
+    """The section with the principle in this system's variables, and the terms that remain of it."""
     blocks: list[Block] = [
         said(
             "By the principle of orthogonality the through variables of all edges, which satisfy the cutset "
@@ -127,7 +127,7 @@ def _pair(subject: Subject, domain: str, edge: str, spatial: bool) -> Math:
 
 
 def _left(subject: Subject) -> Math | None:
-    """What remains of the sum after the connecting and the joints' terminal equations."""
+    """Terms that remain of the sum after connecting equations and joints' terminal equations are used."""
     model = subject.model
     if not model.bodies:
         return None
@@ -171,7 +171,7 @@ def _varied(name: Name) -> Name:
 
 
 def _efforts(subject: Subject) -> list[tuple[bool, Math]]:
-    """Efforts of joints along their velocities."""
+    """Efforts of joints times variations of their velocities."""
     terms: list[tuple[bool, Math]] = []
     given = {quantity.name for quantity in subject.tree.inputs}
     for joint in subject.model.joints:

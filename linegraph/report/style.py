@@ -1,4 +1,4 @@
-"""The style of HTML reports: on wide and narrow screens, in the dark, and on A4."""
+"""The style sheet of HTML reports: for wide and narrow screens, dark mode and A4 paper."""
 
 STYLE = """
 :root { --ink: #1c1c1e; --soft: #5f6368; --line: #d0d4da; --paper: #ffffff; --tint: #f5f6f8;

@@ -1,4 +1,4 @@
-"""What is reported on: a derivation with its notation, and the symbols of its edges."""
+"""The derivation that a report is about, with its notation and the symbols of its edges."""
 
 from __future__ import annotations
 
@@ -25,14 +25,18 @@ if TYPE_CHECKING:
     from linegraph.programs.workspace import Workspace
 
 LETTERS = {"w": "ω", "tau": "τ", "dphi": "Φ", "phi": "φ", "psi": "ψ"}
-"""Letters of domains that are written otherwise."""
+"""Symbols for letters of domains that are written as words."""
 
 
 class AnyName(Mapping[str, Any]):
-    """Every name as the symbol of that name: laws are shown as they were said."""
+    """A mapping in which every name is the SymPy symbol of that name, so that laws appear as given."""
 
     def __init__(self, known: Mapping[str, Any] | None = None) -> None:
-        """Some names may stand for something else."""
+        """Keep the names with other meanings.
+
+        Args:
+            known: values of some names.
+        """
         self._known = known or {}
 
     def __getitem__(self, name: str) -> Any:
@@ -51,20 +55,22 @@ class AnyName(Mapping[str, Any]):
 
 
 class Subject:
-    """A derivation as a report sees it.
+    """A derivation with its notation.
 
     Attributes:
-        derivation, model, tree: what was derived.
-        look: how its expressions look.
+        derivation, model, tree, network: the derivation and its parts.
+        look: its notation.
+        level: how far closed forms are simplified.
+        folded: whether parameters are written as numbers.
     """
 
     def __init__(self, derivation: Derivation, level: str = "full", folded: bool = False) -> None:
         """Choose the notation.
 
         Args:
-            derivation: what to report on.
+            derivation: the derived model.
             level: how far closed forms are simplified.
-            folded: whether parameters are numbers.
+            folded: whether parameters are written as numbers.
         """
         self.derivation = derivation
         self.model = derivation.system
@@ -83,22 +89,32 @@ class Subject:
 
     @cached_property
     def algebra(self) -> Any:
-        """sympy, where laws are shown."""
+        """The SymPy algebra in which laws are shown."""
         from linegraph.algebra.sympy_scalars import Sympy
 
         names = {"q": self.q_names, "v": self.v_names, "u": self.u_names}
         return Sympy(names)
 
     def value(self, x: Any, /, **own: Any) -> Math:
-        """A value of the model as it was given."""
+        """A value of the model as a formula.
+
+        Args:
+            x: a number, an expression or a parameter.
+            own: values of further names.
+        """
         return self.expression(self.resolve(x, **own))
 
     def resolve(self, x: Any, /, **own: Any) -> Any:
-        """A value of the model over sympy, names as symbols."""
+        """A value of the model as a SymPy expression, with names as symbols.
+
+        Args:
+            x: a number, an expression or a parameter.
+            own: values of further names.
+        """
         return resolver(self.algebra, AnyName(own))(x)
 
     def expression(self, x: Any) -> Math:
-        """A number or a sympy expression."""
+        """Convert a number or SymPy expression to a formula."""
         if isinstance(x, (int, float)):
             whole = isinstance(x, float) and x.is_integer() and abs(x) < 1e6
             return number(int(x) if whole else x)
@@ -107,21 +123,21 @@ class Subject:
         return self.look.tree(sympify(x, strict=True))
 
     def valued(self, expression: Any) -> Any:
-        """A sympy expression, parameters as numbers where that is asked for."""
+        """Replace parameters in a SymPy expression by numbers, if the report shows numbers."""
         if not self.folded:
             return expression
         return expression.xreplace(self._numbers)
 
     @cached_property
     def _numbers(self) -> dict[Any, Any]:
-        """The values of independent parameters; a name stands for its symbol and for nothing else."""
+        """Values of independent parameters, by symbol."""
         from sympy import Symbol, sympify
 
         own = (p for p in self.model.parameters.values() if p.value is not None and not p.derived)
         return {Symbol(p.name): sympify(plain(p.value), strict=True) for p in own}
 
     def vector(self, values: Iterable[Any]) -> Math:
-        """Components in brackets; 0 where all are."""
+        """A vector in brackets; 0 if all components are zero."""
         entries = tuple(self.value(x) for x in values)
         return ZERO if all(e == ZERO for e in entries) else Components(entries)
 
@@ -129,37 +145,37 @@ class Subject:
 
     @cached_property
     def q_names(self) -> list[str]:
-        """The symbols of coordinates."""
+        """Names of the symbols of coordinates q."""
         return [quantity.name for quantity in self.tree.positions]
 
     @cached_property
     def v_names(self) -> list[str]:
-        """The symbols of velocities."""
+        """Names of the symbols of velocities v."""
         return list(self.derivation.symbol_names["v"])
 
     @cached_property
     def a_names(self) -> list[str]:
-        """The symbols of their derivatives."""
+        """Names of the symbols of v̇."""
         return list(self.derivation.symbol_names["a"])
 
     @cached_property
     def u_names(self) -> list[str]:
-        """The symbols of inputs."""
+        """Names of the symbols of inputs u."""
         return list(self.derivation.symbol_names["u"])
 
     @cached_property
     def efforts(self) -> dict[str, str]:
-        """The symbols of inputs by their names."""
+        """Names of the symbols of inputs, by name of the input."""
         return dict(zip((x.name for x in self.tree.inputs), self.u_names, strict=True))
 
     @cached_property
     def loop_names(self) -> list[str]:
-        """The symbols of an algebraic loop's unknowns."""
+        """Names of the symbols of an algebraic loop's unknowns."""
         return list(self.derivation.symbol_names["loop"])
 
     @cached_property
     def multiplier_symbols(self) -> dict[str, str]:
-        """The symbols of λ by their names."""
+        """Names of the symbols of λ, by name of the multiplier."""
         from linegraph.dynamics.chords import equations
 
         names = (equation.multiplier.name for equation in equations(self.tree))
@@ -167,24 +183,29 @@ class Subject:
 
     @cached_property
     def multipliers(self) -> list[Quantity]:
-        """λ, by the names of their symbols."""
+        """The multipliers λ, named as their symbols."""
         from linegraph.dynamics.chords import equations
 
         found = (equation.multiplier for equation in equations(self.tree))
         return [replace(q, name=self.multiplier_symbols[q.name]) for q in found]
 
     def symbols(self, names: Iterable[str]) -> list[Math]:
-        """The looks of some names."""
+        """Formulas of some names."""
         return [self.look.name(name) for name in names]
 
     # -- symbols of edges
 
     def domain(self, name: str) -> Domain:
-        """A subspace."""
+        """The domain of a subspace, built in or defined by the model."""
         return self.model.domains.get(name) or DOMAINS[name]
 
     def across(self, domain: str, edge: str) -> Name:
-        """The across variable of an edge."""
+        """Symbol of the across variable of an edge.
+
+        Args:
+            domain: the subspace.
+            edge: name of the edge.
+        """
         if domain == TRANSLATION.name:
             return Name("v", (edge,), bold=True)
         if domain == ROTATION.name:
@@ -195,7 +216,12 @@ class Subject:
         return Name(LETTERS.get(letter, shaped(letter).letter), (edge,))
 
     def through(self, domain: str, edge: str) -> Name:
-        """The through variable of an edge; torques in cutset equations are about the origin of ground."""
+        """Symbol of the through variable of an edge; torques are about the origin of ground.
+
+        Args:
+            domain: the subspace.
+            edge: name of the edge.
+        """
         if domain == TRANSLATION.name:
             return Name("f", (edge,), bold=True)
         if domain == ROTATION.name:
@@ -207,12 +233,19 @@ class Subject:
 
     @cached_property
     def _states(self) -> dict[Any, Name]:
-        """The variables of edges that are states."""
+        """Symbols of the edges' variables that are states."""
         states = () if self.network is None else self.network.states
         return {state.key: self.look.name(state.quantity.name) for state in states}
 
     def combined(self, matrix: IntegerMatrix, row: int, first: Name, of: Any) -> Math:
-        """``X_row + Σ entries X_columns``."""
+        """A cutset or circuit equation's left side: ``X_row + Σ entries X_columns``.
+
+        Args:
+            matrix: the cutset or circuit matrix.
+            row: index of the row.
+            first: symbol of the row's own variable.
+            of: returns the symbol of a column's variable by name of its edge.
+        """
         terms: list[tuple[bool, Math]] = [(False, first)]
         for j, value in sorted(matrix.entries[row].items()):
             terms.append((value < 0, of(matrix.columns[j])))

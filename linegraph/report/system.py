@@ -1,4 +1,4 @@
-"""What the system is: conventions, bodies, joints, elements, components, parameters, inputs, coordinates."""
+"""Sections on the system: conventions, bodies, joints, elements, components, parameters, coordinates."""
 
 from __future__ import annotations
 
@@ -26,12 +26,18 @@ AXES = ("xx", "xy", "xz", "yy", "yz", "zz")
 
 
 def letter(text: str, *, dots: int = 0, bold: bool = True) -> Name:
-    """A vector or a matrix of the whole system."""
+    """Symbol of a vector or matrix of the whole system.
+
+    Args:
+        text: the letter.
+        dots: number of dots.
+        bold: whether it is bold.
+    """
     return Name(text, dots=dots, bold=bold)
 
 
 def motion_equation(subject: Subject) -> TwoSides:
-    """``M v̇ + h = Q``, with multipliers where there are any."""
+    """The equation ``M v̇ + h = Q``, with multipliers if there are any."""
     left = Sum(((False, Product((letter("M"), letter("v", dots=1)))), (False, letter("h"))))
     right: Any = letter("Q")
     if subject.tree.closed:
@@ -41,7 +47,12 @@ def motion_equation(subject: Subject) -> TwoSides:
 
 
 def conventions(subject: Subject, rounded: bool) -> Section:
-    """Signs and symbols."""
+    """The section on signs and symbols.
+
+    Args:
+        subject: the derivation with its notation.
+        rounded: whether numbers in the report are rounded.
+    """
     mechanics, networks = bool(subject.model.bodies), subject.network is not None
     text: list[Inline] = ["The equations of motion are ", motion_equation(subject)]
     if subject.tree.closed:
@@ -78,7 +89,7 @@ def conventions(subject: Subject, rounded: bool) -> Section:
 
 
 def described(subject: Subject) -> Section:
-    """Everything the model says."""
+    """The section that lists the content of the model."""
     blocks: list[Block] = [_counts(subject)]
     for title, table in (
         ("Bodies", _bodies(subject)),
@@ -123,12 +134,18 @@ def _counts(subject: Subject) -> Block:
 
 
 def count(n: int, word: str, words: str = "") -> str:
-    """``2 bodies``."""
+    """A number with its noun, such as ``2 bodies``.
+
+    Args:
+        n: the number.
+        word: the noun in the singular.
+        words: its plural; by default with -s.
+    """
     return f"{n} {word if n == 1 else words or word + 's'}"
 
 
 def listed(parts: list[str]) -> str:
-    """``a, b and c``."""
+    """A list in words: ``a, b and c``."""
     return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
 
 
@@ -150,7 +167,7 @@ def _bodies(subject: Subject) -> tuple[Block, ...] | None:
 
 
 def _inertias(subject: Subject) -> list[Block]:
-    """A row for each body that has any, a column for each product that is not zero everywhere."""
+    """A row for each body with inertia, a column for each entry that is not zero everywhere."""
     bodies = [b for b in subject.model.bodies.values() if any(x != 0 for x in b.inertia)]
     if not bodies:
         return [said("No body has an inertia of its own.")]

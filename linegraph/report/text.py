@@ -1,4 +1,4 @@
-"""A report as plain text, to be read in a terminal."""
+"""A report as plain text for a terminal."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ WIDEST_CELL = 48
 
 
 def render(document: Document) -> str:
-    """The text of a report."""
+    """Write a report as plain text."""
     lines = _heading(document.title, 0)
     if document.about:
         lines += [*_wrapped(visible(document.about)), ""]
@@ -80,7 +80,7 @@ def _block(block: Block) -> list[str]:
 
 
 def said(text: Text) -> str:
-    """Words, names and formulas in a line."""
+    """Write words, names and formulas of one line."""
     return "".join(_inline(part) for part in text)
 
 
@@ -93,7 +93,7 @@ def _inline(part: object) -> str:
 
 
 def visible_words(text: str) -> str:
-    """Words with the spaces around them."""
+    """Make text printable and keep one blank at each end if there was any."""
     inner = visible(text)
     before = " " if text[:1].isspace() else ""
     after = " " if text[-1:].isspace() and inner else ""
@@ -113,7 +113,7 @@ def _row(row: EquationRow) -> list[str]:
 
 
 def _wrapped(text: str) -> list[str]:
-    """Words in lines; formulas are broken at spaces too, as words are."""
+    """Break text into lines at blanks, inside formulas as well."""
     lines, line = [], ""
     for word in text.split():
         if line and len(line) + 1 + len(word) > WIDTH:
@@ -136,7 +136,12 @@ def _table(rows: Iterable[Iterable[str]]) -> list[str]:
 
 
 def matrix_lines(matrix: IntegerMatrix, width: int) -> list[str]:
-    """As a table where it fits, else row by row as sums."""
+    """Write a matrix as a table if it fits, else row by row as sums.
+
+    Args:
+        matrix: the matrix.
+        width: characters per line.
+    """
     if not matrix.rows or not matrix.columns:
         return ["  (empty)"]
     table = [visible(line) if not line.isprintable() else line for line in str(matrix).splitlines()]

@@ -1,1 +1,1 @@
-"""The same numbers by another route: golden vectors and `check`."""
+"""Independent routes to the numbers that emitted code computes: golden vectors and `linegraph check`."""

@@ -25,17 +25,6 @@ PENDING = {
     "codegen",
     "ir",
     #
-    "cli",
-    "display",
-    "drawing",
-    "emission",
-    "evaluation",
-    "files",
-    "identification",
-    "readers",
-    "report",
-    "verification",
-    #
     "dynamics",
     "kinematics",
     "numeric",

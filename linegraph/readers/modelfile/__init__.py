@@ -1,4 +1,4 @@
-"""Model files: a terminal graph written down in TOML or JSON becomes a `Model`."""
+"""Model files: a terminal graph in TOML or JSON becomes a `Model`."""
 
 from linegraph.readers.modelfile.importer import parse, read
 from linegraph.readers.modelfile.schema import schema

@@ -1,4 +1,4 @@
-"""The table ``[check]``: bounds of the states at which the equations are checked."""
+"""The table ``[check]``: bounds of the states at which equations are checked."""
 
 from __future__ import annotations
 
@@ -19,7 +19,16 @@ class Interval:
     """Two numbers, the lower one first."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """(low, high)."""
+        """Read a pair of numbers and check their order.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            The tuple (low, high), or `WRONG` after its errors are noted.
+        """
         found = _PAIR.read(value, spot, names)
         if found is WRONG:
             return WRONG
@@ -30,7 +39,7 @@ class Interval:
         return found
 
     def schema(self) -> Schema:
-        """A pair of numbers."""
+        """The JSON Schema of a pair of numbers."""
         return _PAIR.schema()
 
 
@@ -39,10 +48,19 @@ _PAIR = Items(Real(Scope.NUMBERS, folded=True), 2, "a list [low, high]")
 
 @dataclass(frozen=True)
 class Intervals:
-    """Intervals by name; whether the names exist is asked when states are drawn."""
+    """Intervals by name. The names are checked later, when states are drawn."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """The intervals."""
+        """Read a table of intervals.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            Intervals by name, or `WRONG` after its errors are noted.
+        """
         if not isinstance(value, dict):
             spot.error(f"a table NAME = [low, high] is wanted, not {said(value)}")
             return WRONG
@@ -51,7 +69,7 @@ class Intervals:
         return WRONG if spot.report.count > before else found
 
     def schema(self) -> Schema:
-        """An object."""
+        """The JSON Schema: an object whose values are pairs."""
         return {"type": "object", "additionalProperties": Interval().schema()}
 
 

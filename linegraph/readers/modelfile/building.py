@@ -1,4 +1,4 @@
-"""From the tables of a file to a `Model`: declared in the order of the file, all errors noted."""
+"""From the tables of a file to a `Model`, in the order of the file; errors are noted, not raised."""
 
 from __future__ import annotations
 
@@ -49,10 +49,10 @@ if TYPE_CHECKING:
     from linegraph.readers.modelfile.document import ModelText
 
 SHARED = {*JOINTS, *ELEMENTS, "load", *CONSTRAINTS, "relation", *COMPONENTS}
-"""Types whose names must differ from each other: each names an edge."""
+"""Types that name an edge, so that their names must differ from each other."""
 
 THINGS = {**dict.fromkeys(JOINTS, "joint"), "frame": "frame"}
-"""What errors found later call a table of this type; the type itself unless given."""
+"""Names of types in later errors; others are named by the type itself."""
 
 
 _JOINTS = f"; a joint's table has the name of its type, [revolute.NAME]; types: {', '.join(JOINTS)}"
@@ -74,23 +74,23 @@ MEANT = {
     "force": _LOAD,
     "torque": _LOAD,
 }
-"""What those mean who write a word that the language says otherwise."""
+"""Advice for words of other programs that this format does not have."""
 
 
 def build(document: ModelText, name: str, report: ModelReport, snap: float) -> Model:
-    """The model of a file, as far as it is right.
+    """Build the model of a file, as far as it is right.
 
     Args:
-        document: what the file says.
-        name: for a model that has none.
-        report: where errors go; the caller raises them.
-        snap: as of `Model`.
+        document: the content of the file.
+        name: name of a model that has none.
+        report: collects errors; the caller raises them.
+        snap: as for `Model`.
     """
     return _Builder(document, report, Model(name, snap=snap)).build()
 
 
 class _Builder:
-    """Reads one file's tables in the order in which they need each other."""
+    """Reads the tables of one file in the order in which they depend on each other."""
 
     def __init__(self, document: ModelText, report: ModelReport, model: Model) -> None:
         self._data = document.data
@@ -102,7 +102,7 @@ class _Builder:
         self._owners: dict[str, Claim] = {}
 
     def build(self) -> Model:
-        """The whole model."""
+        """Build the whole model."""
         self._check_tables()
         self._head()
         self._note_names()
@@ -144,7 +144,7 @@ class _Builder:
         return Spot(self._report, path)
 
     def _check_tables(self) -> None:
-        """Refuse tables that the language does not have, and what is not a table."""
+        """Refuse unknown tables, and values where tables are required."""
         known = [*HEAD, *FLAT, *TYPES]
         for key, value in self._data.items():
             if key not in known:
@@ -167,7 +167,7 @@ class _Builder:
                     setattr(self._model, {"name": "name", "description": "about"}[key], found)
 
     def _tables(self, *kinds: str) -> Iterator[tuple[str, str]]:
-        """The tables of some types, in the order of the file."""
+        """Tables of some types, in the order of the file."""
         found = [
             (kind, name)
             for kind in kinds
@@ -178,7 +178,7 @@ class _Builder:
         yield from sorted(found, key=lambda table: self._order.get(table, 0))
 
     def _note_names(self) -> None:
-        """Note what the file declares: what is wrong itself is still there for others to name."""
+        """Note all declared names. Wrong tables count, so that references to them are no further errors."""
         owners: dict[str, str] = {}
         for kind, name in self._tables(*TYPES):
             self._check_name(kind, name, owners)
@@ -224,7 +224,7 @@ class _Builder:
             owners.setdefault(name, kind)
 
     def _read(self, kind: str, name: str) -> Any:
-        """A table's values, or `WRONG`."""
+        """Values of a table, or `WRONG`."""
         return TYPES[kind].read(self._data[kind][name], self._spot(kind, name), self._names)
 
     def _gravity(self) -> None:
@@ -287,7 +287,7 @@ class _Builder:
         body.frame(name, **values | turned)
 
     def _joints(self) -> None:
-        """All joints, then what follows what: a joint may follow a later one."""
+        """Add all joints, then couplings: a joint may follow a later one."""
         followers = []
         for kind, name in self._tables(*JOINTS):
             found = self._read(kind, name)
@@ -306,7 +306,7 @@ class _Builder:
                 self._model.couple(name, follows.pop("joint"), **follows)
 
     def _note_coordinates(self, kind: str, name: str, joint: Joint) -> None:
-        """Coordinates may be named in laws."""
+        """Note the coordinates of a joint, which laws may use."""
         coordinates = [quantity.name for quantity in joint.positions()]
         self._claim((kind, name), claims_of(joint))
         self._names.coordinates |= set(coordinates)
@@ -315,7 +315,7 @@ class _Builder:
             self._names.several[name] = coordinates
 
     def _claim(self, path: tuple[str, ...], claims: Iterable[Claim]) -> None:
-        """Note what owns names; what meets a name of something else is an error, said once."""
+        """Note the owner of names; a clash is reported once."""
         places = self._model.places
         problems = []
         for claim in claims:
@@ -329,7 +329,7 @@ class _Builder:
     def _element(self, kind: str, name: str) -> None:
         given = self._data[kind][name]
         joint = given.get("joint") if isinstance(given, dict) else None
-        # in a joint called x, x is one number, whether the element's own or the coordinate
+        # In a joint called x the element's own x and the coordinate x are the same number.
         self._names.shared = "x" if joint == "x" and not given.get("length") else ""
         found = self._read(kind, name)
         if found is not WRONG:

@@ -1,4 +1,4 @@
-"""From bytes to plain data with places: TOML or JSON, read so that no file can do harm."""
+"""From bytes to plain data with line numbers: TOML or JSON, with limits against hostile files."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _AT = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 
 class ModelText(NamedTuple):
-    """What a file says.
+    """The content of a model file.
 
     Attributes:
         data: its tables.
@@ -37,7 +37,7 @@ class ModelText(NamedTuple):
 
 
 def read_bytes(path: str | os.PathLike[str]) -> bytes:
-    """A regular file's content, at most one byte more than is accepted.
+    """Read a regular file, at most one byte more than the accepted size.
 
     Raises:
         SourceError: it is missing, unreadable or no regular file.
@@ -45,7 +45,7 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
     source = shown(os.fsdecode(path), 1000)
     try:
         _require_regular(os.stat(path), source)
-        # without O_NONBLOCK, opening a FIFO put in the file's place meanwhile would wait for ever
+        # Without O_NONBLOCK, opening a FIFO that has replaced the file since the check would block forever.
         flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
         with open(os.open(path, flags), "rb") as file:
             _require_regular(os.fstat(file.fileno()), source)
@@ -57,15 +57,20 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
 
 
 def parse_document(data: bytes, source: str) -> ModelText:
-    """The tables and places of a TOML or JSON text.
+    """Parse a TOML or JSON text into tables with line numbers.
+
+    Args:
+        data: the bytes of the file, in UTF-8.
+        source: name of the file, for messages; its ending decides between JSON and TOML.
 
     Raises:
-        SourceError: it is neither, or larger than any model.
+        SourceError: it is neither TOML nor JSON, not UTF-8, or larger than the limits.
     """
     source = shown(source, 1000)
     text = _decoded(data, source)
     as_json = source.lower().endswith(".json") or text.lstrip().startswith("{")
     try:
+        # Scanned first: its limits protect the parser, which has none.
         places = (json_lines if as_json else toml_lines).locate(text)
     except Limit as limit:
         raise SourceError(source, limit.line, "", limit.problem) from None
@@ -81,7 +86,7 @@ def _require_regular(status: os.stat_result, source: str) -> None:
 
 
 def _decoded(data: bytes, source: str) -> str:
-    """The text, with LF line ends and without byte order mark."""
+    """Decode the text: LF line ends, no byte order mark."""
     if len(data) > MOST_BYTES:
         problem = f"is over {MOST_BYTES // 2**20} MiB, more than is read"
         raise SourceError(source, None, "", problem)
@@ -118,7 +123,7 @@ def _toml(text: str, source: str, places: Lines) -> dict[str, Any]:
 
 
 def _refuse_twice(source: str, line: int, places: Lines) -> None:
-    """Say what is given twice, where that is what the reader stopped at."""
+    """Report the duplicate key, if that is where the reader stopped."""
     twice = places.twice
     if twice is not None and abs(twice.line - line) <= 1:
         thing = ModelReport(source, places.lines, FLAT).thing(twice.path)
@@ -127,7 +132,7 @@ def _refuse_twice(source: str, line: int, places: Lines) -> None:
 
 
 def _advice(text: str, line: int, said: str) -> str:
-    """What a beginner most likely meant."""
+    """Guess a beginner's intention and return advice that ends the message."""
     there = text.split("\n")[line - 1].strip() if line <= text.count("\n") + 1 else ""
     _, sign, value = there.partition("=")
     if sign and re.match(r"\s*[\[(]?\s*[-+]?[A-Za-z_(.]", value) and "Invalid value" in said:

@@ -1,4 +1,4 @@
-"""Expressions in a file: parsed when read, their names looked up at once, evaluated later."""
+"""Expressions in a model file: parsed and their names checked at once, evaluated later."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from linegraph.readers.modelfile.report import Spot
 
 LARGEST = 1e150
-"""Larger numbers overflow when squared."""
+"""Limit of numbers: the square of a larger one would overflow."""
 
 
 class Scope(IntEnum):
-    """What an expression may name; each includes those before it."""
+    """The names that an expression may use; each scope includes those before it."""
 
     NUMBERS = 0
     PARAMETERS = 1
@@ -47,22 +47,22 @@ ALLOWED = {
 
 @dataclass
 class Names:
-    """What a file declares, as far as it has been read.
+    """The names that a file declares, as far as it has been read.
 
     Attributes:
-        parameters: their values; None where it could not be calculated.
-        inputs: the named inputs.
-        coordinates: of every joint read so far.
-        several: joints with several coordinates, and these.
-        terminals: bodies and frames, with the body each is of.
-        joints: every joint of the file and how many freedoms it has; None while that is not known.
-        elements: the force elements.
-        constraints: the constraints with edges.
-        components: the components of networks, by type.
-        domains: the subspaces that the file adds.
-        incomplete: a joint is wrong, so that not all coordinates are known.
-        owners: what else may own a name that an element's law has for itself: what it is, and its line.
-        shared: what of these is one and the same number in the element that is read now.
+        parameters: values of parameters; None where a value could not be calculated.
+        inputs: named inputs.
+        coordinates: coordinates of the joints read so far.
+        several: joints with several coordinates, and these coordinates.
+        terminals: bodies and frames, each with its body.
+        joints: all joints of the file with their numbers of freedoms; None while unknown.
+        elements: force elements.
+        constraints: constraints with edges.
+        components: components of networks, with their types.
+        domains: domains defined in the file.
+        incomplete: True if a joint is wrong, so that not all coordinates are known.
+        owners: for names that element laws use themselves, the other thing of that name with its line.
+        shared: a name that means the same number in the present element and outside of it.
     """
 
     parameters: dict[str, float | None] = field(default_factory=dict)
@@ -80,7 +80,7 @@ class Names:
     shared: str = ""
 
     def known(self, scope: Scope) -> list[str]:
-        """All that may be named in a scope."""
+        """All names that may be used in a scope."""
         names: list[str] = list(self.parameters) if scope >= Scope.PARAMETERS else []
         if scope >= Scope.TIME:
             names.append("t")
@@ -94,9 +94,17 @@ class Names:
 def read_expression(
     text: str, scope: Scope, spot: Spot, names: Names, own: tuple[str, ...] = ()
 ) -> Formula | None:
-    """The expression, if it can stand here; None after its errors are noted.
+    """Parse an expression and check its names.
 
-    `own` are further names that mean something here.
+    Args:
+        text: the expression.
+        scope: the names it may use.
+        spot: its place in the file, where errors are noted.
+        names: the names that the file declares.
+        own: further names with a meaning here, such as those of the component.
+
+    Returns:
+        The parsed expression; None after errors were noted.
     """
     if not text.strip():
         spot.error("is empty; give a number or an expression")
@@ -124,7 +132,7 @@ def _own_problem(name: str, names: Names) -> str:
 
 
 def _problem(name: str, scope: Scope, spot: Spot, names: Names) -> str:
-    """Why a name cannot stand in an expression; empty if it can."""
+    """Why a name is not allowed in an expression; empty if it is."""
     variable = variable_of(name)
     if variable is not None:
         return _variable_problem(variable, scope, spot, names)
@@ -142,6 +150,7 @@ def _problem(name: str, scope: Scope, spot: Spot, names: Names) -> str:
         return ""
     if rate or name in ("t", "x", "v") or _declared(name, names):
         return f"{name} cannot stand here: {ALLOWED[scope]}"
+    # The name may be a coordinate of a joint that is wrong itself; that joint's error is enough.
     if names.incomplete and scope >= Scope.STATE:
         return ""
     hint = (
@@ -153,7 +162,7 @@ def _problem(name: str, scope: Scope, spot: Spot, names: Names) -> str:
 
 
 def _rate_meant(name: str, scope: Scope, names: Names) -> str:
-    """How to write what looks like the rate of a coordinate: ``x_dot``, ``dx``, ``xdot``."""
+    """Advice for a name that looks like the rate of a coordinate: ``x_dot``, ``dx``, ``xdot``."""
     for inner in (name.removesuffix("_dot"), name.removesuffix("dot"), name.removeprefix("d")):
         own = scope >= Scope.LAW and inner == "x"
         if inner != name and scope >= Scope.STATE and (own or inner in names.coordinates):
@@ -170,7 +179,7 @@ def _owner(name: str, names: Names) -> str:
 def _variable_problem(
     variable: tuple[str, str, str], scope: Scope, spot: Spot, names: Names
 ) -> str:
-    """Why a variable of an edge or a point cannot stand in an expression."""
+    """Why a variable of an edge or point is not allowed in an expression; empty if it is."""
     kind, thing, _ = variable
     if scope >= Scope.STATE and kind in ("across", "through"):
         if thing.partition(".")[0] in names.components:
@@ -203,9 +212,17 @@ def _declared(name: str, names: Names) -> bool:
 
 
 def value_of(formula: Formula, names: Names, spot: Spot) -> float | None:
-    """The value for the parameters' own values; None where it is unknown or was refused.
+    """Evaluate an expression for the file's own parameter values.
 
-    An expression that cannot be calculated for the file's own numbers is a mistake: better said now.
+    An expression without a finite value is reported now, with its line, not when the model is derived.
+
+    Args:
+        formula: the expression.
+        names: the names that the file declares, with values of parameters.
+        spot: its place in the file, where errors are noted.
+
+    Returns:
+        The value; None if a parameter has none, or after an error was noted.
     """
     needed = set(formula.names())
     known = {name: names.parameters.get(name) for name in needed}
@@ -227,7 +244,7 @@ def value_of(formula: Formula, names: Names, spot: Spot) -> float | None:
 
 
 def number_problem(value: Any) -> str:
-    """Why a plain number cannot be used; empty if it can."""
+    """Why a plain number cannot be used: not finite or too large; empty if it can."""
     if isinstance(value, float) and not math.isfinite(value):
         return f"{value} is not a finite number"
     if abs(value) > LARGEST:

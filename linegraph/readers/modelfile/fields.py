@@ -1,4 +1,4 @@
-"""Tables: keys with a kind each, and tables by name."""
+"""Tables of a model file: a kind of value for each key, and tables by name."""
 
 from __future__ import annotations
 
@@ -20,7 +20,13 @@ MOST_NAMED = 1000
 
 @dataclass(frozen=True)
 class Field:
-    """A key of a table: what it holds, whether it must be there, what it means."""
+    """A key of a table.
+
+    Attributes:
+        kind: the values it may have.
+        about: its meaning, for schema and messages.
+        required: whether the key must be present.
+    """
 
     kind: Kind
     about: str = ""
@@ -29,13 +35,13 @@ class Field:
 
 @dataclass(frozen=True)
 class Table:
-    """Keys with a kind each.
+    """A table with a kind of value for each key.
 
     Attributes:
-        fields: by key.
-        needs: of each group, at least one must be there.
-        exclusive: of each group, at most one may be there.
-        about: for the schema.
+        fields: the keys.
+        needs: groups of keys of which at least one must be present.
+        exclusive: groups of keys of which at most one may be present.
+        about: description for the schema.
     """
 
     fields: Mapping[str, Field]
@@ -44,7 +50,16 @@ class Table:
     about: str = ""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """The values by key; those that are wrong make the table wrong."""
+        """Read a table; one wrong value makes the whole table wrong.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            Values by key, or `WRONG` after its errors are noted.
+        """
         if not isinstance(value, dict):
             keys = ", ".join(self.fields)
             spot.error(f"a table with keys is wanted ({keys}), not {said(value)}")
@@ -73,7 +88,7 @@ class Table:
                 spot.error(f"give {' or '.join(given)}, not both")
 
     def schema(self) -> Schema:
-        """An object."""
+        """The JSON Schema: an object with these properties only."""
         properties = {}
         for key, entry in self.fields.items():
             properties[key] = entry.kind.schema()
@@ -98,7 +113,16 @@ class Named:
     kind: Kind
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """The values by name."""
+        """Read tables with names of the user's choice.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            Values by name, or `WRONG` after its errors are noted.
+        """
         if not isinstance(value, dict):
             spot.error(f"tables with a name each are wanted, not {said(value)}")
             return WRONG
@@ -115,5 +139,5 @@ class Named:
         return WRONG if spot.report.count > before else found
 
     def schema(self) -> Schema:
-        """An object."""
+        """The JSON Schema: an object whose values all have one kind."""
         return {"type": "object", "additionalProperties": self.kind.schema()}

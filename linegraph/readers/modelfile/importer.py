@@ -1,4 +1,4 @@
-"""The way in: a model file or its text becomes a `Model`."""
+"""Entry points: a model file or its text becomes a `Model`."""
 
 from __future__ import annotations
 
@@ -21,15 +21,18 @@ from linegraph.readers.modelfile.tables import FLAT
 
 
 def read(path: str | os.PathLike[str], *, snap: float = SNAP) -> Model:
-    """Read a model file: TOML, or JSON where the name ends in ``.json``.
+    """Read a model file: TOML, or JSON if the name ends in ``.json``.
 
     Args:
         path: the file.
         snap: entries of rotation matrices this close to 0, 1 or 1/2 become these exactly.
 
+    Returns:
+        The model; warnings about impossible inertias and loose ends are in its `warnings`.
+
     Raises:
         SourceError: the file cannot be read, or is neither TOML nor JSON.
-        SourceErrors: what it says cannot be; all that is wrong, each with its line.
+        SourceErrors: the content is wrong; contains all errors, each with its line.
     """
     return parse(read_bytes(path), os.fsdecode(path), snap=snap)
 
@@ -39,12 +42,15 @@ def parse(text: bytes, source: str, *, snap: float = SNAP) -> Model:
 
     Args:
         text: TOML or JSON, in UTF-8.
-        source: what messages call it; its stem names a model without name.
-        snap: as for `read`.
+        source: name of the file, for messages; its stem names a model without name.
+        snap: entries of rotation matrices this close to 0, 1 or 1/2 become these exactly.
+
+    Returns:
+        The model; warnings are in its `warnings`.
 
     Raises:
-        SourceError: as for `read`.
-        SourceErrors: as for `read`.
+        SourceError: the text is neither TOML nor JSON.
+        SourceErrors: the content is wrong; contains all errors, each with its line.
 
     Example:
         >>> model = parse(b'''
@@ -72,9 +78,9 @@ def parse(text: bytes, source: str, *, snap: float = SNAP) -> Model:
 
 
 def _impossible(model: Model) -> list[str]:
-    """Warnings of bodies whose inertia no distribution of mass has, for the parameters' own values.
+    """Warnings about inertias that no mass distribution has, at the parameters' own values.
 
-    Inertia about one axis alone is fine: of rotors, and of models in a plane, where nothing else counts.
+    Inertia about one axis alone is accepted: rotors and planar models need no more.
     """
     if any(p.value is None for p in model.parameters.values()):
         return []
@@ -89,7 +95,7 @@ def _impossible(model: Model) -> list[str]:
                 place = _place(model, f'body "{body.name}"')
                 found.append(f'{place}: body "{body.name}": no body has this inertia: {problem}')
     except (ModelError, ArithmeticError):
-        return []  # told with its place when the model is derived
+        return []  # reported with its place when the model is derived
     return found
 
 
@@ -99,12 +105,12 @@ def _place(model: Model, thing: str) -> str:
 
 
 def _loose_ends(model: Model) -> list[str]:
-    """Warnings of vertices at which one edge alone ends: mostly a name written wrongly."""
+    """Warnings about vertices with a single edge: mostly a misspelt name."""
     try:
         branches = edges_of(model.components)
         graphs = projections(branches)
     except ModelError:
-        return []  # said with its place when the model is derived
+        return []  # reported with its place when the model is derived
     owners = {branch.name: branch.component for branch in branches}
     found = []
     for graph in graphs:

@@ -1,6 +1,6 @@
-"""Where things stand in a JSON text: the line of every key and item.
+"""Line numbers of every key and item of a JSON text.
 
-Like its sibling for TOML it runs before the reader, keeps limits, and stops at what it does not know.
+Like `toml_lines` it runs before the parser, enforces limits, and stops at text it does not understand.
 """
 
 from __future__ import annotations
@@ -15,16 +15,17 @@ from linegraph.readers.modelfile.places import Lines, NotUnderstood
 if TYPE_CHECKING:
     from linegraph.readers.modelfile.report import Path
 
+# Possessive quantifiers, so that matching takes linear time for hostile files as well.
 _GAP = re.compile(r"[ \t\r\n]*+")
 _STRING = re.compile(r'"(?:[^"\\\n]++|\\.)*+"')
 _SCALAR = re.compile(r"[A-Za-z0-9.+-]++")
 
 
 def locate(text: str) -> Lines:
-    """The places in a JSON text, as far as it is JSON.
+    """Line numbers in a JSON text, as far as it is valid.
 
     Raises:
-        Limit: it is larger or deeper than any model.
+        Limit: it is larger or deeper than the limits.
     """
     places = Lines(text)
     with contextlib.suppress(NotUnderstood):
@@ -33,7 +34,7 @@ def locate(text: str) -> Lines:
 
 
 class _JsonScanner:
-    """Walks the text once."""
+    """Scans the text once."""
 
     def __init__(self, text: str, places: Lines) -> None:
         self._text = text
@@ -41,7 +42,7 @@ class _JsonScanner:
         self._at = 0
 
     def value(self, path: Path) -> None:
-        """Any value and what is inside it."""
+        """Scan a value with all values inside it."""
         self._places.require_depth(len(path), self._at)
         self._skip()
         first = self._text[self._at : self._at + 1]
@@ -71,7 +72,7 @@ class _JsonScanner:
         return found[0]
 
     def _members(self, path: Path, end: str) -> None:
-        """What stands between two brackets."""
+        """Scan the members between two brackets."""
         self._at += 1
         self._skip()
         count = 0

@@ -1,7 +1,7 @@
-"""What a key may hold: each kind reads a value, notes what is wrong with it, and says its JSON Schema.
+"""Kinds of values of keys: each reads a value, notes its errors and gives its JSON Schema.
 
-The tables of `tables.py` are made of these. Reading gives what the builder takes, or `WRONG` after the
-errors are noted; nothing is raised.
+The tables in `tables.py` are built from these. Reading returns the value for the builder, or `WRONG` after
+errors were noted; it raises nothing, so that one run reports all errors of a file.
 """
 
 from __future__ import annotations
@@ -20,25 +20,34 @@ if TYPE_CHECKING:
 LONGEST_LABEL = 400
 
 WRONG: Final = object()
-"""In place of a value whose errors have been noted."""
+"""Returned in place of a value whose errors have been noted."""
 
 Schema = dict[str, Any]
 
 
 class Kind(Protocol):
-    """What a key may hold."""
+    """A kind of value that a key may have."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """What the builder takes, or `WRONG`."""
+        """Check a value and convert it for the builder.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            The value for the builder, or `WRONG` after its errors are noted.
+        """
         ...
 
     def schema(self) -> Schema:
-        """The same as JSON Schema."""
+        """The JSON Schema of the values."""
         ...
 
 
 def said(value: Any) -> str:
-    """A value as a message calls it."""
+    """A value as messages show it: short, or by its type."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
@@ -57,9 +66,10 @@ class Real:
     """A number, or an expression in quotes.
 
     Attributes:
-        scope: what the expression may name.
-        least: the smallest value it may have; None for any.
-        folded: an expression without names becomes its value: what decides the shape of the equations.
+        scope: the names that the expression may use.
+        least: the smallest value allowed; None for any.
+        folded: whether an expression without names becomes its value. The value then decides the structure
+            of the equations, as a zero angle does.
         own: further names that it may use.
     """
 
@@ -69,7 +79,17 @@ class Real:
     own: tuple[str, ...] = ()
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """The number, or the text of the expression."""
+        """Read a number or an expression.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            The number, or the text of the expression, or `WRONG` after its errors are noted.
+        """
+        # bool is a subclass of int, but true is not a number of a model.
         if isinstance(value, bool) or not isinstance(value, (int, float, str)):
             spot.error(f"a number or an expression in quotes is wanted, not {said(value)}")
             return WRONG
@@ -102,7 +122,7 @@ class Real:
         return f"is negative ({text}); it must be {self.least:g} or more"
 
     def schema(self) -> Schema:
-        """A number or a text."""
+        """The JSON Schema: a number or a string."""
         number: Schema = {"type": "number"}
         if self.least is not None:
             number["minimum"] = self.least
@@ -111,14 +131,26 @@ class Real:
 
 @dataclass(frozen=True)
 class Items:
-    """A list of one kind, of a given length."""
+    """A list of values of one kind, of fixed length.
+
+    Attributes:
+        kind: kind of each item.
+        count: number of items.
+        words: the list in words, for messages.
+    """
 
     kind: Kind
     count: int
     words: str
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """A tuple."""
+        """Read a list of fixed length.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+        """
         if not isinstance(value, list) or len(value) != self.count:
             spot.error(f"{self.words} is wanted, not {said(value)}")
             return WRONG
@@ -126,22 +158,33 @@ class Items:
         return WRONG if any(item is WRONG for item in items) else items
 
     def schema(self) -> Schema:
-        """An array."""
+        """The JSON Schema: an array of fixed length."""
         items = self.kind.schema()
         return {"type": "array", "items": items, "minItems": self.count, "maxItems": self.count}
 
 
 def vector(scope: Scope = Scope.PARAMETERS, folded: bool = False) -> Items:
-    """Three numbers."""
+    """A list of three numbers or expressions.
+
+    Args:
+        scope: the names that expressions may use.
+        folded: whether expressions without names become their values.
+    """
     return Items(Real(scope, folded=folded), 3, "a list of three numbers")
 
 
 @dataclass(frozen=True)
 class Direction:
-    """Three numbers that are not all zero."""
+    """Three numbers, not all zero."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """The direction, not normalized: the builder does that."""
+        """Read a direction; it is not normalised, which the builder does.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+        """
         found = vector(Scope.NUMBERS, folded=True).read(value, spot, names)
         if found is not WRONG and all(x == 0 for x in found):
             spot.error("has length zero; give a direction such as [0, 0, 1]")
@@ -149,7 +192,7 @@ class Direction:
         return found
 
     def schema(self) -> Schema:
-        """A vector."""
+        """The JSON Schema of a vector."""
         return vector(Scope.NUMBERS).schema()
 
 
@@ -158,15 +201,21 @@ class FreeText:
     """A label or a paragraph.
 
     Attributes:
-        longest: in characters.
-        lines: whether it may have several.
+        longest: largest number of characters.
+        lines: whether it may have several lines, which are joined by spaces.
     """
 
     longest: int = LONGEST_LABEL
     lines: bool = False
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """The text."""
+        """Read a text without control characters.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+        """
         if not isinstance(value, str):
             spot.error(f"a text in quotes is wanted, not {said(value)}")
             return WRONG
@@ -180,16 +229,22 @@ class FreeText:
         return " ".join(value.split()) if self.lines else value
 
     def schema(self) -> Schema:
-        """A string."""
+        """The JSON Schema: a string of limited length."""
         return {"type": "string", "maxLength": self.longest}
 
 
 @dataclass(frozen=True)
 class Label:
-    """A name that no expression needs."""
+    """A name that does not occur in expressions, so that it may have dots."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """The name."""
+        """Read a name.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+        """
         problem = "" if isinstance(value, str) else f"a name in quotes is wanted, not {said(value)}"
         problem = problem or name_problem(value, dots=True)
         if problem:
@@ -197,34 +252,46 @@ class Label:
         return WRONG if problem else value
 
     def schema(self) -> Schema:
-        """A string."""
+        """The JSON Schema: a string that is not empty."""
         return {"type": "string", "minLength": 1}
 
 
 @dataclass(frozen=True)
 class Flag:
-    """True or false."""
+    """A truth value: true or false."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """The truth."""
+        """Read a truth value; numbers and strings are errors.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+        """
         if not isinstance(value, bool):
             spot.error(f"true or false is wanted, not {said(value)}")
             return WRONG
         return value
 
     def schema(self) -> Schema:
-        """A boolean."""
+        """The JSON Schema of a boolean."""
         return {"type": "boolean"}
 
 
 @dataclass(frozen=True)
 class Word:
-    """One of some words."""
+    """One of several fixed strings."""
 
     words: tuple[str, ...]
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """The word."""
+        """Read one of the fixed strings.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+        """
         if isinstance(value, str) and value in self.words:
             return value
         known = " or ".join(f'"{word}"' for word in self.words)
@@ -232,16 +299,25 @@ class Word:
         return WRONG
 
     def schema(self) -> Schema:
-        """An enumeration."""
+        """The JSON Schema: an enumeration."""
         return {"enum": list(self.words)}
 
 
 @dataclass(frozen=True)
 class Terminal:
-    """A body, or a frame of one."""
+    """A terminal: a body or a frame of a body."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """Its name."""
+        """Read the name of an existing terminal.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            The name, ``body`` or ``body.frame``, or `WRONG` after its errors are noted.
+        """
         if not isinstance(value, str):
             spot.error(f'"body" or "body.frame" is wanted, not {said(value)}')
             return WRONG
@@ -255,16 +331,25 @@ class Terminal:
         return value
 
     def schema(self) -> Schema:
-        """A string."""
+        """The JSON Schema: a string with a description."""
         return {"type": "string", "description": '"body" or "body.frame"; "ground" is a body too'}
 
 
 @dataclass(frozen=True)
 class Ends:
-    """Two terminals of different bodies."""
+    """Two terminals of different bodies: tail and head."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """(tail, head)."""
+        """Read tail and head of an edge.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            The tuple (tail, head), or `WRONG` after its errors are noted.
+        """
         ends = Items(Terminal(), 2, "[tail, head], two bodies or frames,").read(value, spot, names)
         if ends is WRONG:
             return WRONG
@@ -275,16 +360,22 @@ class Ends:
         return ends
 
     def schema(self) -> Schema:
-        """A pair."""
+        """The JSON Schema: a pair of strings."""
         return Items(Terminal(), 2, "").schema()
 
 
 @dataclass(frozen=True)
 class JointName:
-    """A joint of the file, with one freedom."""
+    """A joint of the file with one degree of freedom."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """Its name."""
+        """Read the name of an existing joint.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+        """
         if not isinstance(value, str):
             spot.error(f"the name of a joint is wanted, not {said(value)}")
             return WRONG
@@ -300,5 +391,5 @@ class JointName:
         return value
 
     def schema(self) -> Schema:
-        """A string."""
+        """The JSON Schema of a string."""
         return {"type": "string"}

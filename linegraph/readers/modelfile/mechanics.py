@@ -1,4 +1,4 @@
-"""Kinds of keys that bodies and compound joints have: an inertia, the parts of a joint."""
+"""Kinds of values of bodies and basements: inertias and rotations."""
 
 from __future__ import annotations
 
@@ -29,10 +29,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class InertiaTable:
-    """Entries by name, three moments, or a 3 x 3 matrix."""
+    """An inertia: entries by name, three moments, or a symmetric 3 x 3 matrix (kg m^2)."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """Entries by name."""
+        """Read an inertia in any of its three forms.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            Entries by name, or `WRONG` after its errors are noted.
+        """
         if isinstance(value, dict):
             return INERTIA.read(value, spot, names)
         if not isinstance(value, list) or len(value) != 3:
@@ -57,21 +66,30 @@ class InertiaTable:
         return dict(zip(ENTRIES, found, strict=True))
 
     def schema(self) -> Schema:
-        """One of three shapes."""
+        """The JSON Schema: one of three forms."""
         matrix = Items(vector(), 3, "").schema()
         return {"anyOf": [INERTIA.schema(), vector().schema(), matrix]}
 
 
 @dataclass(frozen=True)
 class Turning:
-    """The basement's rotation: by an axis and an angle, by three angles, or "input"."""
+    """The basement's rotation: axis and angle, three angles, or "input"."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """The table, or the word."""
+        """Read a rotation as a function of time.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            The table, or "input", or `WRONG` after its errors are noted.
+        """
         return value if value == BY_INPUT else TURNING.read(value, spot, names)
 
     def schema(self) -> Schema:
-        """A table or the word."""
+        """The JSON Schema: a table or "input"."""
         return {"anyOf": [{"const": BY_INPUT}, TURNING.schema()]}
 
 

@@ -1,4 +1,4 @@
-"""What a thing in a file may be called."""
+"""Which names things in a model file may have."""
 
 from __future__ import annotations
 
@@ -14,7 +14,12 @@ _SYMBOL = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
 def name_problem(name: str, *, dots: bool = False) -> str:
-    """Why a body, frame, joint or element cannot have a name; empty if it can."""
+    """Why a body, frame, joint or element cannot have a name; empty if it can.
+
+    Args:
+        name: the name.
+        dots: whether dots and slashes are allowed, which otherwise separate bodies from frames and edges.
+    """
     if not name.strip():
         return "a name is needed; it is empty"
     if name != name.strip() or not name.isprintable():

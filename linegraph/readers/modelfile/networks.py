@@ -1,6 +1,6 @@
-"""Kinds of values of components: vertices, windings, matrices, equations; and the tables of components.
+"""Kinds of values of network components: vertices, windings, matrices, equations; tables of components.
 
-The tables follow from the dataclasses in the register, as those of joints and elements do.
+The tables follow from the dataclasses in the register of components, like those of joints and elements.
 """
 
 from __future__ import annotations
@@ -43,7 +43,16 @@ class Vertex:
     """A vertex of a network: any name; "ground" is the reference."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """Its name."""
+        """Read the name of a vertex, which need not be declared.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            The name, or `WRONG` after its errors are noted.
+        """
         problem = (
             "" if isinstance(value, str) else f"the name of a vertex is wanted, not {said(value)}"
         )
@@ -53,16 +62,25 @@ class Vertex:
         return WRONG if problem else value
 
     def schema(self) -> Schema:
-        """A string."""
+        """The JSON Schema: a string that is not empty."""
         return {"type": "string", "minLength": 1}
 
 
 @dataclass(frozen=True)
 class DomainName:
-    """A scalar subspace."""
+    """The name of a scalar domain."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """Its name."""
+        """Read the name of a domain, built in or defined in the file.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            The name, or `WRONG` after its errors are noted.
+        """
         known = [*(name for name in DOMAINS if name not in SPATIAL), *sorted(names.domains)]
         if isinstance(value, str) and value in known:
             return value
@@ -71,24 +89,33 @@ class DomainName:
         return WRONG
 
     def schema(self) -> Schema:
-        """A string: files may add domains of their own."""
+        """The JSON Schema: a string, since files may define domains."""
         return {"type": "string"}
 
 
 @dataclass(frozen=True)
 class Several:
-    """A list of one kind, of any length but none.
+    """A list of values of one kind, with at least one item.
 
     Attributes:
-        kind: of each.
-        what: what is wanted.
+        kind: kind of each item.
+        what: the list in words, for messages.
     """
 
     kind: Kind
     what: str
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """A tuple."""
+        """Read a list with at least one item.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            A tuple, or `WRONG` after its errors are noted.
+        """
         if not isinstance(value, list) or not 0 < len(value) <= MOST_ENTRIES:
             spot.error(f"{self.what} is wanted, not {said(value)}")
             return WRONG
@@ -96,7 +123,7 @@ class Several:
         return WRONG if any(item is WRONG for item in found) else found
 
     def schema(self) -> Schema:
-        """An array."""
+        """The JSON Schema: an array that is not empty."""
         return {"type": "array", "items": self.kind.schema(), "minItems": 1}
 
 
@@ -105,13 +132,22 @@ class LawText:
     """An equation in quotes.
 
     Attributes:
-        own: what it may name of the component.
+        own: variables of the component that it may use.
     """
 
     own: tuple[str, ...]
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """Both its sides."""
+        """Read an equation, two expressions with one equals sign between them.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            The equation, or `WRONG` after its errors are noted.
+        """
         if not isinstance(value, str) or value.count("=") != 1:
             spot.error(f'an equation such as "y = f(x)" is wanted, not {said(value)}')
             return WRONG
@@ -122,7 +158,7 @@ class LawText:
         return WRONG if left is None or right is None else LawEquation(left, right)
 
     def schema(self) -> Schema:
-        """A string."""
+        """The JSON Schema: a string with one equals sign."""
         return {"type": "string", "pattern": "^[^=]+=[^=]+$"}
 
 
@@ -140,11 +176,16 @@ _PLACED: Mapping[str, Kind] = {
     "domains": Items(DomainName(), 2, "a list of two domains"),
     "keeps": Word((ACROSS, THROUGH)),
 }
-"""What fields hold that have one meaning in all components."""
+"""Kinds of the fields that have the same meaning in all components."""
 
 
 def component_table(name: str, abouts: Callable[[type], dict[str, str]]) -> Table:
-    """The table of a component type; `abouts` says what a dataclass tells of its fields."""
+    """The table of a component type.
+
+    Args:
+        name: the type's name in the register.
+        abouts: returns descriptions of the fields of a dataclass, by name.
+    """
     kind = COMPONENTS[name]
     told = abouts(kind)
     required = {*kind.required, "between", "second", "output", "windings", "of"}

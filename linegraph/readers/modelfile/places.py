@@ -1,4 +1,4 @@
-"""Lines of a text by the keys that stand there, kept within limits."""
+"""Line numbers of the keys of a text, with limits on its size."""
 
 from __future__ import annotations
 
@@ -11,31 +11,41 @@ if TYPE_CHECKING:
 DEEPEST = 16
 """Deepest nesting of keys and lists; a model needs five levels."""
 MOST_ENTRIES = 50_000
-"""Most keys and items; each costs the reader some microseconds."""
+"""Largest number of keys and items; each costs the reader some microseconds."""
 MOST_LINES = 200_000
 LONGEST_STRING = 20_000
 LONGEST_STRINGS = 500_000
-"""Characters of all texts together: as expressions, each costs a microsecond or more."""
+"""Largest number of characters of all texts together: an expression costs a microsecond for each, or more."""
 LONGEST_SCALAR = 400
-"""Characters of a number: long ones take time that grows with the square of their length."""
+"""Largest number of characters of a number: conversion takes time quadratic in the length."""
 
 
 class Limit(Exception):
-    """The text is larger or deeper than any model; with the line that is too much."""
+    """The text exceeds a limit.
+
+    Attributes:
+        line: the line at which it does.
+        problem: the limit, in words.
+    """
 
     def __init__(self, line: int, problem: str) -> None:
-        """Keep both."""
+        """Keep line and problem."""
         super().__init__(problem)
         self.line = line
         self.problem = problem
 
 
 class NotUnderstood(Exception):
-    """Here is what the scanner does not understand."""
+    """The scanner has met text that it does not understand."""
 
 
 class Twice(NamedTuple):
-    """A key given twice."""
+    """A key that is given twice.
+
+    Attributes:
+        path: the key.
+        line, first: lines of the second and the first occurrence.
+    """
 
     path: Path
     line: int
@@ -46,15 +56,15 @@ class Lines:
     """The line of every key, in the order of the text.
 
     Attributes:
-        lines: by path; items of lists by number.
+        lines: line numbers by path; items of lists are numbered from 0.
         twice: the first key that is given twice, if any.
     """
 
     def __init__(self, text: str) -> None:
-        """Count the lines.
+        """Find the line starts.
 
         Raises:
-            Limit: there are too many.
+            Limit: there are too many lines.
         """
         self.lines: dict[Path, int] = {}
         self.twice: Twice | None = None
@@ -68,16 +78,19 @@ class Lines:
             end = text.find("\n", end + 1)
 
     def line(self, offset: int) -> int:
-        """The line of an offset, counted from 1."""
+        """The line of a character offset, counted from 1."""
         return bisect_right(self._starts, offset)
 
     def note(self, path: Path, offset: int, again: bool = False) -> None:
-        """Remember where a key is.
+        """Record the line of a key.
 
         Args:
             path: the key.
-            offset: where it is.
-            again: it may have been named before: a table that more is added to.
+            offset: its character offset in the text.
+            again: whether it may have occurred before: a table to which keys are added.
+
+        Raises:
+            Limit: it is nested too deeply, or there are too many keys.
         """
         self.require_depth(len(path), offset)
         if path not in self.lines:
@@ -88,16 +101,24 @@ class Lines:
             raise Limit(self.line(offset), f"has more than {MOST_ENTRIES} keys and items")
 
     def require_depth(self, depth: int, offset: int) -> None:
-        """Refuse what is nested too deeply.
+        """Refuse nesting beyond the limit.
+
+        Args:
+            depth: the nesting.
+            offset: its character offset in the text.
 
         Raises:
-            Limit: it is.
+            Limit: the nesting is too deep.
         """
         if depth > DEEPEST:
             raise Limit(self.line(offset), f"is nested more than {DEEPEST} deep")
 
     def string(self, length: int, offset: int) -> None:
-        """Count a text.
+        """Count the characters of a text.
+
+        Args:
+            length: number of characters.
+            offset: its character offset in the text.
 
         Raises:
             Limit: it is too long, or all texts together are.
@@ -107,7 +128,11 @@ class Lines:
         self._require(self._strings, LONGEST_STRINGS, offset, "has texts of together")
 
     def scalar(self, length: int, offset: int) -> None:
-        """Count a number or another word.
+        """Count the characters of a number, date or truth value.
+
+        Args:
+            length: number of characters.
+            offset: its character offset in the text.
 
         Raises:
             Limit: it is too long.

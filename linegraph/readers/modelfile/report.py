@@ -1,4 +1,4 @@
-"""What is wrong with a file: every error with its place, all of them collected before any is raised."""
+"""Errors of a model file, each with its line; all are collected before any is raised."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MOST_COLLECTED = 1000
 MOST_HINTS = 25
 MOST_APART = 8
 MOST_COMPARED = 300
-"""Hints compare with other names letter by letter: hostile files must not make that slow."""
+"""Limits of hints, which compare names letter by letter: hostile files must not make that slow."""
 
 Path = tuple[str | int, ...]
 
@@ -28,12 +28,12 @@ class ModelReport:
 
     Args:
         source: the file as the user named it.
-        lines: the line of every table and key; what has none is where its table is.
-        flat: tables that hold keys themselves, instead of tables by name.
+        lines: the line of every table and key.
+        flat: tables that hold keys directly instead of tables by name.
 
     Attributes:
-        count: how many errors there were.
-        errors: those of them that are kept.
+        count: the number of errors.
+        errors: the errors that are kept, at most `MOST_COLLECTED`.
     """
 
     def __init__(self, source: str, lines: Mapping[Path, int], flat: Iterable[str] = ()) -> None:
@@ -46,14 +46,20 @@ class ModelReport:
         self.errors: list[SourceError] = []
 
     def add(self, path: Path, problem: str, thing: str | None = None) -> None:
-        """Note an error at a key, which messages call `thing` or by its path."""
+        """Note an error at a key.
+
+        Args:
+            path: the key.
+            problem: what is wrong.
+            thing: its name in messages; default its path.
+        """
         self.count += 1
         if self.count <= MOST_COLLECTED:
             thing = self.thing(path) if thing is None else thing
             self.errors.append(SourceError(self.source, self.line(path), thing, problem))
 
     def line(self, path: Path) -> int | None:
-        """Where a key is; where its table is, if the file does not name it."""
+        """The line of a key, or of the table it belongs to if the file does not contain it."""
         while path:
             if path in self._lines:
                 return self._lines[path]
@@ -61,7 +67,7 @@ class ModelReport:
         return None
 
     def thing(self, path: Path) -> str:
-        """How messages call a key: ``[spring.strut] stiffness``."""
+        """The name of a key in messages: ``[spring.strut] stiffness``."""
         depth = 1 if path and path[0] in self._flat else 2
         if len(path) < depth and (not path or path not in self._lines):
             return ""
@@ -71,7 +77,15 @@ class ModelReport:
         return f"{table} {_dotted(path[depth:])}" if path[depth:] else table
 
     def hint(self, name: str, known: Iterable[str]) -> str:
-        """The end of a message: the known name most like `name`, or all of a few."""
+        """The end of a message: the most similar known name, or all if there are few.
+
+        Args:
+            name: the unknown name.
+            known: the known names.
+
+        Returns:
+            Text that begins with a semicolon; empty after too many hints.
+        """
         self._hints += 1
         names = list(known)
         if self._hints > MOST_HINTS or not names:
@@ -89,24 +103,29 @@ class ModelReport:
 
     @contextmanager
     def placed(self, path: Path) -> Iterator[None]:
-        """Note what the builder refuses as an error of this table."""
+        """Note errors raised by the model builder as errors of this table."""
         try:
             yield
         except ModelError as error:
             self.add(path, error.problem)
 
     def conclude(self) -> None:
-        """Raise what was collected, in the order of the file.
+        """Raise the errors collected, in the order of the file.
 
         Raises:
-            SourceErrors: if there was any error.
+            SourceErrors: there was at least one error.
         """
         if self.errors:
             raise SourceErrors(sorted(self.errors, key=lambda error: error.line or 0))
 
 
 class Spot(NamedTuple):
-    """A place in the file, to blame."""
+    """A place in the file for errors.
+
+    Attributes:
+        report: collects the errors.
+        path: the key.
+    """
 
     report: ModelReport
     path: Path
@@ -116,12 +135,16 @@ class Spot(NamedTuple):
         return Spot(self.report, (*self.path, *keys))
 
     def error(self, problem: str) -> None:
-        """Note what is wrong here."""
+        """Note an error at this place."""
         self.report.add(self.path, problem)
 
 
 def shown(text: str, longest: int = LONGEST_SHOWN) -> str:
-    r"""File text made fit for a message: on one line, printable, not too long.
+    r"""Make text of a file fit for a message: on one line, printable, not too long.
+
+    Args:
+        text: the text.
+        longest: largest number of characters.
 
     Example:
         >>> print(shown("a" + chr(10) + "b"))
@@ -132,7 +155,7 @@ def shown(text: str, longest: int = LONGEST_SHOWN) -> str:
 
 
 def _dotted(path: Path) -> str:
-    """Keys as a file writes them, items of lists counted from 1."""
+    """Keys as written in the file; items of lists are counted from 1."""
     text = ""
     for key in path:
         if isinstance(key, int):

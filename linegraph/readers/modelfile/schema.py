@@ -1,7 +1,7 @@
-"""The language as a JSON Schema, for editors that complete and check while one types.
+"""JSON Schema of model files, for completion and checks in editors.
 
-It is made from the same tables that the reader checks by. ``linegraph schema`` prints it; the copy that is
-shipped is beside this file.
+It is generated from the tables that the reader uses. ``linegraph schema`` prints it; the copy shipped with
+the package is next to this file.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from linegraph.readers.modelfile.tables import FLAT, HEAD, INPUT, OUTPUT, PARAME
 
 PATH = Path(__file__).with_name("schema.json")
 DRAFT = "http://json-schema.org/draft-07/schema#"
-"""The newest that editors for TOML understand."""
+"""The newest draft that TOML editors understand."""
 
 
 def schema() -> dict[str, Any]:
-    """The schema of a model file."""
+    """The JSON Schema of a model file."""
     properties: dict[str, Any] = {
         key: {"description": entry.about, **entry.kind.schema()} for key, entry in HEAD.items()
     }
@@ -46,5 +46,5 @@ def _named(inner: dict[str, Any], about: str) -> dict[str, Any]:
 
 
 def text() -> str:
-    """The schema as it is shipped."""
+    """The schema as text, as shipped."""
     return json.dumps(schema(), indent=1) + "\n"

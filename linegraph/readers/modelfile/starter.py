@@ -1,4 +1,4 @@
-"""The file a new model starts from: complete, commented, ready to emit."""
+"""A model file to start from: complete, commented, ready to emit."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ force = ["push", 0, 0]
 
 
 def starter(name: str) -> str:
-    """A commented model file that can be emitted as it is.
+    """Text of a commented model file, ready to emit.
 
     Args:
         name: the model's name.
@@ -106,14 +106,17 @@ def starter(name: str) -> str:
 
 
 def write(name: str, out: str | None = None) -> Path:
-    """Write a starter file; never over another.
+    """Write a starter file without overwriting an existing one.
 
     Args:
         name: the model's name.
         out: the file; default ``NAME.toml``.
 
+    Returns:
+        The path of the file.
+
     Raises:
-        LinegraphError: the name cannot be used, or the file is there already or cannot be written.
+        LinegraphError: the name cannot be used, or the file already exists or cannot be written.
     """
     problem = name_problem(name)
     if problem:

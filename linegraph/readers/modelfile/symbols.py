@@ -1,4 +1,4 @@
-"""Parameters and inputs of a file, and the angles of frames that depend on parameters."""
+"""Parameters, inputs and outputs of a model file, and angles of frames that depend on parameters."""
 
 from __future__ import annotations
 
@@ -18,11 +18,18 @@ if TYPE_CHECKING:
 
 MOST_PARAMETERS = 5000
 LONGEST_CIRCLE = 8
-"""Names of a circle that are shown."""
+"""Largest number of names shown of a circular definition."""
 
 
 def read_parameters(tables: Any, spot: Spot, names: Names, model: Model) -> None:
-    """Declare the parameters, each of which may depend on those before it."""
+    """Declare the parameters; each may depend on those before it.
+
+    Args:
+        tables: the content of ``[parameters]``; ignored if it is no table, which is reported elsewhere.
+        spot: the place of the table, where errors are noted.
+        names: the names that the file declares; values are added.
+        model: receives the parameters.
+    """
     if not isinstance(tables, dict):
         return
     if len(tables) > MOST_PARAMETERS:
@@ -43,7 +50,7 @@ def read_parameters(tables: Any, spot: Spot, names: Names, model: Model) -> None
             value = PARAMETER.fields["value"].kind.read(given, place, names)
             found = WRONG if value is WRONG else {"value": value}
         names.parameters[name] = None
-        # what depends on a parameter in error has none of its own
+        # A parameter that depends on a wrong one is not wrong itself, and gets no error.
         if found is not WRONG and model.parameters.keys() >= set(wanted[name]):
             model.parameter(name, **found)
             names.parameters[name] = _number(found["value"], place, names)
@@ -54,7 +61,7 @@ def _value(given: Any) -> Any:
 
 
 def _used(value: Any) -> list[str]:
-    """The names in a value, if it is a readable expression."""
+    """Names in a value, if it is a valid expression."""
     try:
         return list(dict.fromkeys(parse(value).names())) if isinstance(value, str) else []
     except ModelError:
@@ -62,7 +69,7 @@ def _used(value: Any) -> list[str]:
 
 
 def _order_problem(name: str, wanted: dict[str, list[str]], names: Names, thorough: bool) -> str:
-    """Say which parameter is used before it is declared, and whether that goes in a circle."""
+    """Why a parameter cannot be used before its declaration; empty if all come before."""
     later = [used for used in wanted[name] if used in wanted and used not in names.parameters]
     if not later:
         return ""
@@ -76,7 +83,7 @@ def _order_problem(name: str, wanted: dict[str, list[str]], names: Names, thorou
 
 
 def _circle(name: str, wanted: dict[str, list[str]]) -> list[str]:
-    """A way from a parameter back to itself; empty if there is none."""
+    """A chain of definitions from a parameter back to itself; empty if there is none."""
     before: dict[str, str] = {}
     ahead = [name]
     while ahead:
@@ -94,14 +101,21 @@ def _circle(name: str, wanted: dict[str, list[str]]) -> list[str]:
 
 
 def _number(value: Any, spot: Spot, names: Names) -> float | None:
-    """The value of a parameter for the file's own numbers; its errors have been noted."""
+    """Value of a parameter for the file's own numbers; None after errors were noted."""
     if not isinstance(value, str):
         return float(value)
     return value_of(parse(value), names, spot)
 
 
 def read_inputs(tables: Any, spot: Spot, names: Names, model: Model) -> None:
-    """Declare the named inputs."""
+    """Declare the named inputs.
+
+    Args:
+        tables: the content of ``[inputs]``; ignored if it is no table, which is reported elsewhere.
+        spot: the place of the table, where errors are noted.
+        names: the names that the file declares; inputs are added.
+        model: receives the inputs.
+    """
     if not isinstance(tables, dict):
         return
     for name, given in tables.items():
@@ -119,7 +133,14 @@ def read_inputs(tables: Any, spot: Spot, names: Names, model: Model) -> None:
 
 
 def read_outputs(tables: Any, spot: Spot, names: Names, model: Model) -> None:
-    """Note what the emitted code is to return by name."""
+    """Declare the outputs: expressions that emitted code returns by name.
+
+    Args:
+        tables: the content of ``[outputs]``; ignored if it is no table, which is reported elsewhere.
+        spot: the place of the table, where errors are noted.
+        names: the names that the file declares.
+        model: receives the outputs.
+    """
     if not isinstance(tables, dict):
         return
     for name, given in tables.items():
@@ -135,7 +156,10 @@ def read_outputs(tables: Any, spot: Spot, names: Names, model: Model) -> None:
 
 
 def rotation_value(value: Any) -> Any:
-    """An angle, or a list of angles, for the builder: expressions as sympy's, which has their sines."""
+    """An angle or a tuple of angles for the builder.
+
+    Expressions become SymPy expressions, because the rotation matrix needs their sines and cosines.
+    """
     if isinstance(value, tuple):
         return tuple(rotation_value(x) for x in value)
     if not isinstance(value, str):

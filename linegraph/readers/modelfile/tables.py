@@ -1,7 +1,8 @@
-"""The tables of the language, as data: what may stand where.
+"""Tables of a model file, as data: the keys of each and their kinds of values.
 
-Joints and elements are not listed: their tables follow from the dataclasses in the registers, so that a
-new one is in the language at once. `Law` fields see x and v; all others see what `Scope` says.
+Tables of joints, elements, constraints and components follow from the dataclasses in the registers, so a
+new type is available in files at once. `Law` fields may use x and v; all others use the names of their
+`Scope`.
 """
 
 from __future__ import annotations
@@ -178,7 +179,7 @@ HEAD = {
 
 
 def _abouts(kind: type) -> dict[str, str]:
-    """What a dataclass says about its attributes."""
+    """Descriptions of a dataclass's attributes, from its docstring."""
     found: dict[str, str] = {}
     for base in reversed(kind.__mro__):
         text = cleandoc(base.__doc__ or "").partition("Attributes:")[2].partition("Example:")[0]
@@ -192,7 +193,17 @@ class Parts:
     """The parts of a compound joint: a list of tables with a type each."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """As `Compound.parts` wants them."""
+        """Read one to six parts.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            Tuples (type, axis, options), as `Compound.parts` requires, or `WRONG` after its errors are
+            noted.
+        """
         if not isinstance(value, list) or not value or len(value) > 6:
             spot.error(f"a list of one to six {{ type, axis }} is wanted, not {said(value)}")
             return WRONG
@@ -213,7 +224,7 @@ class Parts:
         return (kind, found["axis"], options)
 
     def schema(self) -> Schema:
-        """An array of alternatives."""
+        """The JSON Schema: an array of alternatives."""
         items = {"anyOf": [part_table(kind).schema() for kind in PARTS]}
         return {"type": "array", "items": items, "minItems": 1, "maxItems": 6}
 
@@ -228,11 +239,11 @@ _KINDS: Mapping[str, Kind] = {
     "tuple[Vector, Vector]": Items(Direction(), 2, "a list of two directions"),
     "tuple[Any, ...]": Parts(),
 }
-"""What a field of a dataclass holds, by its annotation."""
+"""Kind of a dataclass's field, by its annotation."""
 
 
 def _own(kind: type, base: type) -> dict[str, Field]:
-    """The fields a type adds to those of its base."""
+    """Fields that a type adds to those of its base class."""
     common = {f.name for f in fields(base)}
     abouts = _abouts(kind)
     return {
@@ -243,13 +254,13 @@ def _own(kind: type, base: type) -> dict[str, Field]:
 
 
 def _has_axis(kind: type[Joint]) -> bool:
-    """Whether it is about `axis`, and not about none or its own axes."""
+    """Whether a joint type uses `axis`."""
     own = {f.name for f in fields(kind)} - {f.name for f in fields(Joint)}
     return kind.alignment is not Joint.alignment and not own & {"axes", "parts"}
 
 
 def freedoms_of(name: str) -> int | None:
-    """How many freedoms a joint type has; None where that depends on the joint."""
+    """Number of freedoms of a joint type; None if it depends on the joint."""
     freedoms: Any = JOINTS[name].freedoms
     return freedoms if isinstance(freedoms, int) else None
 
@@ -258,7 +269,7 @@ _AXIS = Field(Direction(), "direction, in the joint's frames", True)
 
 
 def joint_table(name: str) -> Table:
-    """The table of a joint type."""
+    """Return the table of a joint type."""
     kind = JOINTS[name]
     entries = {"between": Field(Ends(), "[tail, head]: body or body.frame", True)}
     if _has_axis(kind):
@@ -280,7 +291,7 @@ def joint_table(name: str) -> Table:
 
 
 def part_table(name: str) -> Table:
-    """The table of one part of a compound joint."""
+    """Return the table of one part of a compound joint."""
     entries = {
         "type": Field(Word((name,)), "", True),
         "axis": _AXIS,
@@ -290,7 +301,7 @@ def part_table(name: str) -> Table:
 
 
 def element_table(name: str) -> Table:
-    """The table of an element type."""
+    """Return the table of an element type."""
     kind = ELEMENTS[name]
     places = {
         "between": Field(Ends(), "[tail, head]: along the line that joins them; or"),
@@ -306,7 +317,7 @@ def element_table(name: str) -> Table:
 
 
 def constraint_table(name: str) -> Table:
-    """The table of a constraint type."""
+    """Return the table of a constraint type."""
     kind = CONSTRAINTS[name]
     own = {
         key: replace(entry, kind=Timed()) if key in kind.timed else entry
@@ -329,7 +340,7 @@ TYPES: Mapping[str, Table] = {
     "domain": DOMAIN,
     **{name: component_table(name, _abouts) for name in COMPONENTS},
 }
-"""The tables ``[type.name]``."""
+"""Tables ``[type.name]``, by type."""
 
 FLAT: Mapping[str, Table | None] = {
     "parameters": None,
@@ -340,4 +351,4 @@ FLAT: Mapping[str, Table | None] = {
     "check": CHECK,
     "outputs": None,
 }
-"""The tables ``[table]``; None for those with names of the user's own."""
+"""Tables ``[table]``; None for those whose keys are names chosen by the user."""

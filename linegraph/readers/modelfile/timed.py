@@ -1,4 +1,4 @@
-"""Kinds of values that only some tables have: motions, start values, lists of names, kinds of coordinates."""
+"""Kinds of values of few tables only: motions, start values, lists of names, kinds of coordinates."""
 
 from __future__ import annotations
 
@@ -20,29 +20,47 @@ MOST_COORDINATES = 7
 
 @dataclass(frozen=True)
 class Timed:
-    """An expression of t, or "input": the value and its first two derivatives come from inputs."""
+    """An expression of t, or "input": value and first two derivatives are inputs then."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """The expression, or the word."""
+        """Read an expression of t.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            The number or expression, or "input", or `WRONG` after its errors are noted.
+        """
         return value if value == BY_INPUT else Real(Scope.TIME).read(value, spot, names)
 
     def schema(self) -> Schema:
-        """A number or a text."""
+        """The JSON Schema: a number or a string."""
         return Real(Scope.TIME).schema()
 
 
 @dataclass(frozen=True)
 class PrescribedMotion:
-    """A prescribed motion: one for each coordinate, or "input" for all.
+    """A prescribed motion: one expression for each coordinate, or "input" for all.
 
     Attributes:
-        count: of coordinates; None where one may stand alone, and the builder counts them.
+        count: number of coordinates; None if the builder checks the number and a single one needs no list.
     """
 
     count: int | None = None
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """As the builder wants it."""
+        """Read a prescribed motion.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            A tuple of expressions, one expression, or "input", or `WRONG` after its errors are noted.
+        """
         if value == BY_INPUT:
             return value
         if not isinstance(value, list) and self.count is None:
@@ -53,7 +71,7 @@ class PrescribedMotion:
         )
 
     def schema(self) -> Schema:
-        """A number, a text or a list."""
+        """The JSON Schema: a number, a string or an array."""
         items = Items(Timed(), self.count or 1, "").schema()
         if self.count is None:
             items["maxItems"] = MOST_COORDINATES
@@ -62,17 +80,26 @@ class PrescribedMotion:
 
 @dataclass(frozen=True)
 class Start:
-    """Where the search for a position begins: a number, or one for each coordinate."""
+    """Start of the search for a position: a number, or one for each coordinate."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """A number or a tuple."""
+        """Read start values.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            A number or a tuple, or `WRONG` after its errors are noted.
+        """
         if not isinstance(value, list):
             return Real().read(value, spot, names)
         count = len(value) if 1 <= len(value) <= MOST_COORDINATES else 1
         return Items(Real(), count, "one number for each coordinate").read(value, spot, names)
 
     def schema(self) -> Schema:
-        """A number, a text or a list."""
+        """The JSON Schema: a number, a string or an array."""
         items = Items(Real(), 1, "").schema()
         return {"anyOf": [*Real().schema()["anyOf"], items | {"maxItems": MOST_COORDINATES}]}
 
@@ -82,29 +109,47 @@ class Listed:
     """A list of names of any length.
 
     Attributes:
-        what: what they name.
+        what: the things named, for messages.
     """
 
     what: str
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """A tuple; whether the names exist is asked when the tree is chosen."""
+        """Read a list of names; their existence is checked when the tree is chosen.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            A tuple of names, or `WRONG` after its errors are noted.
+        """
         if not isinstance(value, list) or not all(isinstance(x, str) for x in value):
             spot.error(f"a list of {self.what} is wanted, not {said(value)}")
             return WRONG
         return tuple(value)
 
     def schema(self) -> Schema:
-        """An array of strings."""
+        """The JSON Schema: an array of strings."""
         return {"type": "array", "items": {"type": "string"}}
 
 
 @dataclass(frozen=True)
 class Coordinates:
-    """One kind of coordinates for all bodies, or kinds for single bodies."""
+    """One kind of coordinates for all bodies, or a kind for each of some bodies."""
 
     def read(self, value: Any, spot: Spot, names: Names) -> Any:
-        """The word, or words by body."""
+        """Read kinds of coordinates.
+
+        Args:
+            value: the value in the file.
+            spot: its place in the file, where errors are noted.
+            names: the names that the file declares.
+
+        Returns:
+            The kind, or kinds by body, or `WRONG` after its errors are noted.
+        """
         word = Word(COORDINATES)
         if not isinstance(value, dict):
             return word.read(value, spot, names)
@@ -119,6 +164,6 @@ class Coordinates:
         return WRONG if spot.report.count > before else dict(value)
 
     def schema(self) -> Schema:
-        """A word, or an object of words."""
+        """The JSON Schema: an enumeration, or an object of such."""
         word = Word(COORDINATES).schema()
         return {"anyOf": [word, {"type": "object", "additionalProperties": word}]}

@@ -1,9 +1,9 @@
-"""Where things stand in a TOML text: the line of every table, key and item.
+"""Line numbers of every table, key and item of a TOML text.
 
-The standard library's reader gives values without places. This scanner gives places without values. It
-understands the whole of TOML's structure: headers, arrays of tables, dotted and quoted keys, inline
-tables, arrays and strings over several lines. It runs first, so that its limits protect the reader; where
-it meets what is not TOML it stops, and the reader says why.
+The standard library's parser gives values without places; this scanner gives places without values. It
+understands the structure of TOML completely: headers, arrays of tables, dotted and quoted keys, inline
+tables, arrays and strings over several lines. It runs first, so that its limits protect the parser. Where
+it meets text that is not TOML it stops, and the parser reports the error.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from linegraph.readers.modelfile.places import Lines, NotUnderstood
 if TYPE_CHECKING:
     from linegraph.readers.modelfile.report import Path
 
+# Possessive quantifiers, so that matching takes linear time for hostile files as well.
 _BLANK = re.compile(r"[ \t]*+")
 _GAP = re.compile(r"(?:[ \t\n]++|#[^\n]*+)*+")
 _LINE_END = re.compile(r"[ \t]*+(?:#[^\n]*+)?(?:\n|\Z)")
@@ -32,10 +33,10 @@ _SCALAR = re.compile(r"[^\s,\[\]{}#=\"'][^,\]}#\n]*+")
 
 
 def locate(text: str) -> Lines:
-    r"""The places in a TOML text with LF line ends, as far as it is TOML.
+    r"""Line numbers in a TOML text with LF line ends, as far as it is valid.
 
     Raises:
-        Limit: it is larger or deeper than any model.
+        Limit: it is larger or deeper than the limits.
 
     Example:
         >>> places = locate("[body.arm]\nmass = 1\n")
@@ -49,7 +50,7 @@ def locate(text: str) -> Lines:
 
 
 class _Scanner:
-    """Walks the text once."""
+    """Scans the text once."""
 
     def __init__(self, text: str, places: Lines) -> None:
         self._text = text
@@ -58,7 +59,7 @@ class _Scanner:
         self._tables: dict[Path, int] = {}
 
     def scan(self) -> None:
-        """All of it."""
+        """Scan the whole text."""
         table: Path = ()
         self._match(_GAP)
         while self._at < len(self._text):
@@ -71,7 +72,7 @@ class _Scanner:
             self._match(_GAP)
 
     def _match(self, pattern: re.Pattern[str]) -> str | None:
-        """What stands here, stepped over."""
+        """Match a pattern at the present position and move behind it."""
         found = pattern.match(self._text, self._at)
         if found is None:
             return None
@@ -84,7 +85,7 @@ class _Scanner:
         self._at += len(text)
 
     def _header(self) -> Path:
-        """``[table]`` or ``[[array of tables]]``."""
+        """Scan ``[table]`` or ``[[array of tables]]``."""
         start = self._at
         array = self._text.startswith("[[", start)
         self._expect("[[" if array else "[")
@@ -103,7 +104,7 @@ class _Scanner:
         return path
 
     def _keys(self) -> list[str]:
-        """A dotted key, with the blanks around it."""
+        """Scan a dotted key with the blanks around it."""
         keys = []
         while True:
             self._match(_BLANK)
@@ -118,7 +119,7 @@ class _Scanner:
             self._at += 1
 
     def _plain(self, key: str) -> str:
-        """A key without its quotes."""
+        """Return a key without its quotes."""
         if key[0] not in "\"'":
             return key
         self._places.string(len(key), self._at)
@@ -128,7 +129,7 @@ class _Scanner:
             raise NotUnderstood from None
 
     def _pair(self, table: Path) -> None:
-        """``key = value``."""
+        """Scan ``key = value``."""
         start = self._at
         keys = self._keys()
         self._expect("=")

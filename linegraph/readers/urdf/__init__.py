@@ -2,8 +2,8 @@
 
     path ──document──→ Element ──links, joints──→ Link, Joint ──structure──→ Tree ──building──→ Model
 
-`document` is the only part that touches files and XML; `structure` the only one that knows what a tree
-is; `building` the only one that knows `Model`. Everything in between is frozen data with its line.
+Only `document` handles files and XML, only `structure` builds the tree, and only `building` uses `Model`.
+All stages between are frozen data with line numbers.
 """
 
 from linegraph.readers.urdf.importer import parse, read

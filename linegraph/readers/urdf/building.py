@@ -1,4 +1,4 @@
-"""From a tree of links and joints to a `Model`, its numbers folded or kept as parameters."""
+"""From a tree of links and joints to a `Model`, with numbers folded or kept as parameters."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ _AXES = ("xx", "xy", "xz", "yy", "yz", "zz")
 
 
 class UrdfOptions(NamedTuple):
-    """How a robot becomes a model.
+    """Options for turning a robot into a model.
 
     Attributes:
-        floating: a free joint above the root link instead of a weld to ground.
-        symbolic: masses, moments and offsets of joints are parameters instead of numbers.
-        snap: as of `Model`.
+        floating: whether a free joint connects the root link to ground, instead of a weld.
+        symbolic: whether masses, moments and offsets of joints become parameters.
+        snap: as for `Model`.
     """
 
     floating: bool
@@ -40,7 +40,13 @@ class UrdfOptions(NamedTuple):
 
 
 def build(name: str, tree: Tree, options: UrdfOptions, report: UrdfReport) -> Model:
-    """Build the model: bodies and joints in the order of the walk.
+    """Build the model, with bodies and joints in the order of the walk.
+
+    Args:
+        name: the model's name.
+        tree: the robot.
+        options: how its root is connected and whether its numbers become parameters.
+        report: receives warnings and places errors.
 
     Raises:
         SourceError: a ``<mimic>`` is impossible, or the builder refuses something.
@@ -65,7 +71,7 @@ def build(name: str, tree: Tree, options: UrdfOptions, report: UrdfReport) -> Mo
 
 
 def _add_base(model: Model, tree: Tree, options: UrdfOptions, report: UrdfReport) -> None:
-    """Connect the root link to ground, before all other joints so that its v comes first."""
+    """Connect the root link to ground, before all other joints, so that its velocities come first in v."""
     joints = {joint.name: joint for joint in tree.walk}
     if options.floating:
         if ROOT in joints:
@@ -73,8 +79,8 @@ def _add_base(model: Model, tree: Tree, options: UrdfOptions, report: UrdfReport
             raise report.error(joints[ROOT].line, named("joint", ROOT), problem)
         model.free(ROOT, (model.ground, tree.root.name))
         return
-    # A weld has no coordinate, so that emitted code does not show its name; it only has to differ from
-    # every joint's. A file may call a joint anything, hence the search.
+    # A weld has no coordinate and its name is not emitted; it only has to differ from those of all joints.
+    # A file may call a joint anything, hence the loop.
     weld = "ground/base"
     while weld in joints:
         weld += "'"
@@ -82,7 +88,7 @@ def _add_base(model: Model, tree: Tree, options: UrdfOptions, report: UrdfReport
 
 
 def _add_joint(model: Model, joint: UrdfJoint, at: Sequence[Any]) -> None:
-    """Put a frame of the joint's name on the parent; the head is the child link itself."""
+    """Add a frame named after the joint to the parent; the head is the frame of the child link."""
     tail = BodyHandle(model, joint.parent).frame(joint.name, at, joint.rpy)
     model.add_joint(JOINTS[joint.kind](joint.name, (tail, joint.child), joint.axis))
 
@@ -105,13 +111,13 @@ def _mention_dampers(tree: Tree, report: UrdfReport) -> None:
 
 
 class _Folded:
-    """Adds links and gives offsets as the file's numbers."""
+    """Adds links and offsets as numbers."""
 
     def __init__(self, model: Model) -> None:
         self._model = model
 
     def link(self, link: UrdfLink) -> None:
-        """Add a body with its mass centre and central inertia."""
+        """Add a body with its mass centre and its inertia about the mass centre."""
         if link.inertial is None:
             self._model.body(link.name)
             return
@@ -120,19 +126,19 @@ class _Folded:
         self._model.body(link.name, mass=given.mass, mass_center=given.center, inertia=inertia)
 
     def offset(self, joint: UrdfJoint) -> Sequence[Any]:
-        """The joint's position in the parent link (m)."""
+        """Position of the joint in the parent link (m)."""
         return joint.at
 
 
 class _Symbolic:
-    """Adds links and gives offsets as parameters with the file's numbers as values.
+    """Adds links and offsets as parameters whose values are the numbers of the file.
 
-    A link's ten moments are about its own origin: M and h are linear in them.
+    A link's ten moments are about its own origin, since M and h are linear in these.
     """
 
     def __init__(self, model: Model, tree: Tree) -> None:
         self._model = model
-        # a coordinate and a parameter of one name would be one symbol
+        # A parameter must not have the name of a coordinate: they would be the same symbol.
         taken = {
             claim.name
             for joint in tree.walk
@@ -163,7 +169,7 @@ class _Symbolic:
         self._model.body(link.name, mass=m, first_moment=(mx, my, mz), inertia=entries)
 
     def offset(self, joint: UrdfJoint) -> Sequence[Any]:
-        """Three parameters: the joint's position in the parent link."""
+        """Three parameters: the position of the joint in the parent link (m)."""
         stem, who = self._joints[joint.name], named("joint", joint.name)
         return [
             self._model.parameter(
@@ -174,9 +180,14 @@ class _Symbolic:
 
 
 def moments_of(inertial: Inertial) -> tuple[float, Vector, Inertia]:
-    """Mass, first moment and inertia about the origin of the link's frame."""
+    """Mass moments about the origin of the link's frame, in its axes.
+
+    Returns:
+        Mass (kg), first moment (kg m) and inertia (xx, xy, xz, yy, yz, zz) (kg m^2).
+    """
     m, (x, y, z) = inertial.mass, inertial.center
     xx, xy, xz, yy, yz, zz = inertial.tensor
+    # Parallel axis theorem; off-diagonal entries have the sign of the inertia matrix, xy = -∫ x y dm.
     about = (
         xx + m * (y * y + z * z),
         xy - m * x * y,

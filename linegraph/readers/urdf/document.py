@@ -1,8 +1,8 @@
-"""Files and XML, read so that no file can do harm: bytes in, plain elements with line numbers out.
+"""Files and XML, with limits against hostile files: bytes in, plain elements with line numbers out.
 
-Refused before the XML parser sees them: anything but a regular file, more than 16 MiB, more markup than
-any robot has, encodings in which a check of bytes would be blind, and every DOCTYPE, since a DOCTYPE is
-what defines entities.
+Refused before the XML parser runs: anything but a regular file, more than 16 MiB, more markup than any
+robot has, encodings in which checks of bytes are not reliable, and every DOCTYPE, because it can define
+entities.
 """
 
 from __future__ import annotations
@@ -20,19 +20,20 @@ if TYPE_CHECKING:
 
 MOST_BYTES = 16 * 2**20
 MOST_MARKUP = 200_000
-"""Most ``<`` and ``=``: bounds the elements and attributes, each of which costs 100 bytes or more."""
+"""Largest number of ``<`` and ``=``: limits elements and attributes, each of which takes 100 bytes or more.
+"""
 MOST_PREFIXES = 20
-"""Most undeclared namespace prefixes that are forgiven."""
+"""Largest number of undeclared namespace prefixes that are tolerated."""
 DEEPEST = 64
 """Deepest nesting of elements; a URDF needs six levels."""
 LONGEST_TEXT = 100
-"""Characters of an element's text that are kept."""
+"""Number of characters of an element's text that are kept."""
 WIDEST = 100
-"""Most attributes of an element; lxml takes time that grows with the square of their number."""
+"""Largest number of attributes of an element; lxml takes time quadratic in it."""
 
-# whole subtrees that say nothing about the equations of motion
+# Subtrees without effect on the equations of motion.
 _OPAQUE = frozenset({"visual", "collision", "sensor"})
-# a superset of ASCII each, so that the checks of bytes below see what the parser will see
+# Supersets of ASCII only, so that the checks of bytes below see the same markup as the parser.
 _ENCODINGS = frozenset(
     {"utf-8", "utf8", "us-ascii", "ascii", "iso-8859-1", "iso-8859-15", "latin1", "windows-1252"}
 )
@@ -53,11 +54,11 @@ class XmlElement(NamedTuple):
     """An XML element.
 
     Attributes:
-        tag: the name, with its prefix where it has one: ``link``, ``xacro:include``.
-        line: counted from 1; of a tag over several lines, the last.
-        attributes: those in a namespace as ``{namespace}name``.
-        children: comments left out; empty for the parts of no interest here.
-        text: the first of what stands in it; a URDF says everything in attributes, extensions do not.
+        tag: the name, with its prefix if it has one: ``link``, ``xacro:include``.
+        line: counted from 1; the last one for a tag over several lines.
+        attributes: values by name; those in a namespace as ``{namespace}name``.
+        children: elements inside, without comments; empty for parts that are not read.
+        text: beginning of the text inside; URDF uses attributes only, extensions do not.
     """
 
     tag: str
@@ -68,7 +69,7 @@ class XmlElement(NamedTuple):
 
 
 def read_bytes(path: str | os.PathLike[str]) -> bytes:
-    """A regular file's content.
+    """Read a regular file.
 
     Raises:
         SourceError: it is missing, unreadable, no regular file or over 16 MiB.
@@ -76,7 +77,7 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
     report = UrdfReport(os.fsdecode(path))
     try:
         _require_regular(os.stat(path), report)
-        # without O_NONBLOCK, opening a FIFO put in the file's place meanwhile would wait for ever
+        # Without O_NONBLOCK, opening a FIFO that has replaced the file since the check would block forever.
         flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
         with open(os.open(path, flags), "rb") as file:
             _require_regular(os.fstat(file.fileno()), report)
@@ -89,10 +90,14 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
 
 
 def parse_xml(data: bytes, report: UrdfReport) -> XmlElement:
-    """The root element of an XML document.
+    """Parse an XML document and return its root element.
+
+    Args:
+        data: the bytes of the file.
+        report: receives warnings and places errors.
 
     Raises:
-        SourceError: it is not XML, or XML of a kind that is refused.
+        SourceError: it is not XML, or is XML of a kind that is refused.
     """
     data = _checked(data, report)
     root = _parsed(data, report)
@@ -109,7 +114,7 @@ def _require_regular(status: os.stat_result, report: UrdfReport) -> None:
 
 
 def _checked(data: bytes, report: UrdfReport) -> bytes:
-    """The bytes without byte order mark, if a parser may see them."""
+    """Check that a parser may read the bytes; return them without byte order mark."""
     if len(data) > MOST_BYTES:
         raise report.error(None, "", f"is over {MOST_BYTES // 2**20} MiB, more than is read")
     if data.startswith((b"\xff\xfe", b"\xfe\xff", b"\x00\x00\xfe\xff")):
@@ -142,7 +147,7 @@ def _require_encoding(data: bytes, report: UrdfReport) -> None:
 
 
 def _require_plain_start(data: bytes, report: UrdfReport) -> None:
-    """Look at what comes first after the prolog: a DOCTYPE can stand nowhere else."""
+    """Refuse a DOCTYPE; it can only follow the prolog."""
     found = _PROLOG.match(data)
     start = found.end() if found else 0
     line = _line_at(data, start)
@@ -161,12 +166,12 @@ def _line_at(data: bytes, offset: int) -> int:
 
 
 def _parsed(data: bytes, report: UrdfReport) -> Any:
-    """The root as lxml sees it.
+    """Parse with lxml, tolerating undeclared namespace prefixes.
 
-    Some tools write prefixes that nothing declares. They are declared here and the whole is parsed again:
-    a parser that recovers would pass over a file's other errors, too.
+    Some tools write prefixes without declaring them. They are declared in a second pass instead of using a
+    recovering parser, which would ignore other errors of the file, too.
     """
-    from lxml import etree  # only here: whoever reads no URDF does not wait for it
+    from lxml import etree  # imported here: other commands need not wait for it
 
     undefined = etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE
     prefixes: dict[str, int] = {}
@@ -195,6 +200,8 @@ def _parsed(data: bytes, report: UrdfReport) -> Any:
 def _parser() -> Any:
     from lxml import etree
 
+    # URDF needs no entities, DTDs or network; each of them would let a file read others or grow without
+    # bound.
     return etree.XMLParser(
         resolve_entities=False,
         no_network=True,
@@ -207,13 +214,13 @@ def _parser() -> Any:
 
 
 def _prefix(message: str) -> str:
-    """The prefix an error complains of; empty for one that cannot be declared in any encoding."""
+    """The prefix named by an error; empty if it cannot be declared in every encoding."""
     found = re.match(r"Namespace prefix ([A-Za-z0-9_.-]+) ", message)
     return found[1] if found else ""
 
 
 def _declaring(prefixes: Iterable[str], data: bytes) -> bytes:
-    """The document with these prefixes declared in its root element, no line moved."""
+    """Declare prefixes in the root element without changing line numbers."""
     declarations = "".join(f' xmlns:{prefix}="undeclared:{prefix}"' for prefix in prefixes)
     found = _ROOT_TAG.match(data)
     end = found.end() if found else 0
@@ -221,14 +228,14 @@ def _declaring(prefixes: Iterable[str], data: bytes) -> bytes:
 
 
 def _refuse(error: Any, errors: list[Any], report: UrdfReport) -> NoReturn:
-    """Say the first thing that is wrong; what follows is mostly its consequence."""
+    """Raise the first error; later ones are mostly its consequences."""
     line, message = (errors[0].line, errors[0].message) if errors else (error.lineno, error.msg)
     plain = re.sub(r", (use|try) XML_PARSE_HUGE.*", "", " ".join(str(message).split()))
     raise report.error(line or None, "XML", shown(plain, 200)) from None
 
 
 def _converted(node: Any, report: UrdfReport, depth: int, parent_line: int) -> XmlElement:
-    # after line 65535 libxml2 knows the lines only of elements with text in them, so inherit
+    # Beyond line 65535 libxml2 knows the lines of elements with text only; others inherit their parent's.
     line = max(node.sourceline or 1, parent_line)
     if depth > DEEPEST:
         raise report.error(line, "XML", f"elements are nested more than {DEEPEST} deep")
@@ -244,7 +251,7 @@ def _converted(node: Any, report: UrdfReport, depth: int, parent_line: int) -> X
 
 
 def _tag(node: Any) -> str:
-    """The name as written, except that xacro's elements have the prefix xacro whatever the file calls it."""
+    """The name as written; elements of xacro always have the prefix xacro."""
     namespace, _, local = node.tag.rpartition("}")
     if namespace[1:] in _XACRO:
         return f"xacro:{local}"

@@ -1,7 +1,7 @@
-"""What extensions of a URDF say of the motion: it is not read, and a user should know.
+"""Extensions of a URDF that may affect the motion: they are not read, and the user is warned.
 
-A URDF may hold elements of other tools: with a prefix (``drake:rotor_inertia``), or in ``<gazebo>``,
-``<transmission>`` and ``<ros2_control>``. Most are about sensors, control or looks. Those whose names tell of
+A URDF may contain elements of other tools: with a prefix (``drake:rotor_inertia``), or inside ``<gazebo>``,
+``<transmission>`` and ``<ros2_control>``. Most concern sensors, control or appearance. Those named after
 inertia, joints, loops, springs or dampers would change the equations.
 """
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from linegraph.readers.urdf.report import UrdfReport
 
 TOOLS = frozenset({"gazebo", "transmission", "ros2_control"})
-"""Elements of other tools without a prefix: well known, and mostly without effect on the motion."""
+"""Elements of other tools without a prefix, mostly without effect on the motion."""
 
 _IN_TOOLS = frozenset(
     {
@@ -35,20 +35,25 @@ _IN_TOOLS = frozenset(
         *("mimic", "mimicJoint", "mass", "inertial", "gearbox_ratio", "thread_pitch"),
     }
 )
-"""What of these elements counts; their joints do where they have a type, as in SDF."""
+"""Elements inside these that matter; their joints matter if they have a type, as in SDF."""
 
 _RATIOS = frozenset({"mechanicalReduction", "mechanical_reduction"})
-"""What counts beside a rotor's inertia only: without one, motion at the joint is the same."""
+"""Elements that matter together with a rotor's inertia only; otherwise the joint moves the same."""
 
 _ELSEWHERE = frozenset({"surface", "contact", "sensor", "visual", "collision"})
-"""Parts of other tools' elements that are about contact, sensors and looks."""
+"""Elements inside these about contact, sensors and appearance."""
 
 _ZERO = re.compile(r"[+-]?0*\.?0*(?:[eE][+-]?[0-9]+)?")
 _MOST_NAMED = 4
 
 
 def mention_extensions(root: XmlElement, report: UrdfReport) -> None:
-    """Warn of extensions that say something of the motion, in the robot, its links and its joints."""
+    """Warn about extensions of the robot, its links and its joints that may affect the motion.
+
+    Args:
+        root: the root element.
+        report: receives the warnings.
+    """
     _mention(root, "robot", report)
     for part in root.children:
         if part.tag in ("link", "joint") and "name" in part.attributes:
@@ -95,7 +100,7 @@ def _prefixed(element: XmlElement) -> Iterator[XmlElement]:
 
 
 def _of_tools(element: XmlElement) -> Iterator[XmlElement]:
-    """What of the elements of other tools changes the motion, zeros left out."""
+    """Elements of other tools that affect the motion, without those whose value is zero."""
     for child in element.children:
         local = child.tag.rpartition(":")[2]
         if local in ("gravity", "turnGravityOff"):

@@ -1,4 +1,4 @@
-"""The way in: a URDF file or its text becomes a `Model`."""
+"""Entry points: a URDF file or its text becomes a `Model`."""
 
 from __future__ import annotations
 
@@ -36,23 +36,23 @@ def read(
     """Read a URDF file.
 
     Every joint that is neither fixed nor a ``<mimic>`` gives coordinates under its own name, in the order
-    of a depth-first walk from the root link, children in the order of the file. Gravity is
-    (0, 0, -9.81) m/s^2 in the axes of the root link at rest. Visuals, collisions, limits and everything
-    else that says nothing about the equations of motion is passed over; no other file is opened.
+    of a depth-first walk from the root link, children in the order of the file. Gravity is (0, 0, -9.81)
+    m/s^2 in the axes of the root link at rest. Visuals, collisions, limits and other elements without
+    effect on the equations of motion are skipped; no other file is opened.
 
     Args:
         path: the file.
-        base: ``fixed`` welds the root link to ground; ``floating`` puts a free joint ``root`` there.
-        symbolic: mass, first moment and inertia of every link and the position of every joint become
-            parameters, the file's numbers their values.
+        base: ``fixed`` welds the root link to ground; ``floating`` connects it by a free joint ``root``.
+        symbolic: whether mass, first moment and inertia of every link and the position of every joint
+            become parameters whose values are the numbers of the file.
         snap: entries of rotation matrices this close to 0, 1 or 1/2 become these exactly.
 
     Returns:
-        The model; what a user should know about the file is in its `warnings`.
+        The model; warnings about the file are in its `warnings`.
 
     Raises:
         SourceError: the file cannot be read or describes no robot; with the line at fault.
-        ValueError: `base` is another word.
+        ValueError: `base` is another string.
     """
     return parse(read_bytes(path), os.fsdecode(path), base=base, symbolic=symbolic, snap=snap)
 
@@ -64,14 +64,17 @@ def parse(
 
     Args:
         text: the XML document.
-        source: what messages call it; its stem names a robot without name.
-        base: as for `read`.
-        symbolic: as for `read`.
-        snap: as for `read`.
+        source: name of the file, for messages; its stem names a robot without name.
+        base: ``fixed`` or ``floating``, as for `read`.
+        symbolic: whether numbers become parameters, as for `read`.
+        snap: rounding of rotation matrices, as for `read`.
+
+    Returns:
+        The model; warnings about the text are in its `warnings`.
 
     Raises:
-        SourceError: as for `read`.
-        ValueError: `base` is another word.
+        SourceError: the text describes no robot; with the line at fault.
+        ValueError: `base` is another string.
 
     Example:
         >>> model = parse(b'''<robot name="pendulum">
@@ -126,7 +129,7 @@ def _xacro_element(element: XmlElement) -> XmlElement | None:
 
 
 def _name_of(root: XmlElement, source: str, report: UrdfReport) -> str:
-    """The robot's name; where there is none, that of the file."""
+    """Name of the robot, or that of the file if the robot has none."""
     if root.attributes.get("name", "").strip():
         return named_part(report, root)[0]
     stem = PurePath(source).stem.strip()

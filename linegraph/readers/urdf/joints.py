@@ -1,4 +1,4 @@
-"""Joints: kind, placement, axis and the joint followed, as the file says."""
+"""Joints of a URDF: kind, placement, axis and the joint they follow."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ KINDS = {
     "floating": "free",
     "fixed": "fixed",
 }
-"""URDF's joint types, each with the kind of joint it is here."""
+"""Joint types of URDF with the names of the corresponding joint types here."""
 ONE_FREEDOM = frozenset({"revolute", "prismatic"})
 
 _CHILDREN = ("parent", "child", "origin", "axis", "mimic", "dynamics", "limit")
 _IGNORED = frozenset({"safety_controller", "calibration", "hardwareInterface", "physics"})
 _DAMPERS = ("damping", "friction")
-# of one vendor's files
+# Used by one vendor.
 _OTHER_DYNAMICS = frozenset(
     {"D", "K", "mu_coulomb", "mu_viscous", "spring_reference", "spring_stiffness"}
 )
@@ -36,7 +36,14 @@ _OFF_UNIT = 1e-3
 
 
 class Mimic(NamedTuple):
-    """``q = multiplier q_master + offset``."""
+    """A coupling of coordinates: ``q = multiplier q_master + offset``.
+
+    Attributes:
+        master: name of the joint that is followed.
+        multiplier: ratio of the coordinates (rad and m).
+        offset: rad or m.
+        line: line of the element.
+    """
 
     master: str
     multiplier: float
@@ -48,12 +55,15 @@ class UrdfJoint(NamedTuple):
     """A joint of the robot.
 
     Attributes:
+        name: its name.
+        line: line of the element.
         kind: a value of `KINDS`.
         parent, child: names of links.
         at, rpy: the joint frame in the parent link's frame (m, rad).
         axis: unit vector in the joint frame.
+        mimic: the coupling to another joint, if any.
         damped: whether the file gives damping or friction.
-        parent_line, child_line: where the links are named.
+        parent_line, child_line: lines of the elements that name the links.
     """
 
     name: str
@@ -75,11 +85,11 @@ def joint_of(element: XmlElement, report: UrdfReport, snap: float) -> UrdfJoint:
 
     Args:
         element: the element.
-        report: where warnings go.
-        snap: components of the axis this close to 0 are taken as 0.
+        report: receives warnings and places errors.
+        snap: components of the axis this close to 0 become 0.
 
     Raises:
-        SourceError: something in it cannot be.
+        SourceError: an attribute or child element is missing or invalid.
     """
     name, part = named_part(report, element)
     part.check_attributes(("name", "type"), ("dont_collapse",))
@@ -103,7 +113,7 @@ def _kind(part: XmlPart) -> str:
 
 
 def _link_named(part: XmlPart, tag: str) -> XmlPart:
-    """The ``<parent>`` or ``<child>``, which both name a link."""
+    """The ``<parent>`` or ``<child>`` element, each of which names a link."""
     found = part.need(tag)
     found.check_attributes(("link",))
     return found
@@ -127,7 +137,7 @@ def _axis(part: XmlPart, kind: str, snap: float) -> Vector:
 
 
 def _direction(unit: Vector, snap: float) -> Vector:
-    """A unit vector without the dust that degrees turned to radians leave beside coordinate axes."""
+    """A unit vector without the rounding that conversion from degrees leaves next to coordinate axes."""
     clean = tuple(0.0 if abs(c) <= snap else c for c in unit)
     if sum(c != 0 for c in clean) == 1:
         clean = tuple(float(round(c)) for c in clean)
@@ -139,7 +149,7 @@ def _mimic(part: XmlPart, kind: str) -> Mimic | None:
     if mimic is None:
         return None
     mimic.check_attributes(("joint", "multiplier", "offset"))
-    if kind == "fixed":  # some vendors fix the fingers of a hand and leave the rest as it was
+    if kind == "fixed":  # some vendors fix the fingers of a hand and keep their <mimic>
         mimic.warn("<mimic> of a fixed joint is ignored")
         return None
     if kind not in ONE_FREEDOM:

@@ -1,4 +1,4 @@
-"""Links: the mass distribution in the link's own frame, and whether any body can have it."""
+"""Links of a URDF: mass distribution in the link's own frame, and whether a body can have it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _IGNORED = frozenset(
 
 
 class Inertial(NamedTuple):
-    """A mass distribution.
+    """Mass, mass centre and inertia of a link.
 
     Attributes:
         mass: kg.
@@ -43,7 +43,13 @@ class Inertial(NamedTuple):
 
 
 class UrdfLink(NamedTuple):
-    """A link of the robot; without `inertial` it has no mass."""
+    """A link of the robot.
+
+    Attributes:
+        name: its name.
+        line: line of the element.
+        inertial: mass and inertia; None for a link without mass.
+    """
 
     name: str
     line: int
@@ -55,11 +61,11 @@ def link_of(element: XmlElement, report: UrdfReport, snap: float) -> UrdfLink:
 
     Args:
         element: the element.
-        report: where warnings go.
+        report: receives warnings and places errors.
         snap: entries of the inertial frame's rotation this close to 0, 1 or 1/2 become these exactly.
 
     Raises:
-        SourceError: something in it cannot be.
+        SourceError: an attribute or child element is missing or invalid.
     """
     name, part = named_part(report, element)
     part.check_attributes(("name",), ("type",))
@@ -74,6 +80,7 @@ def _inertial(part: XmlPart, snap: float) -> Inertial:
     center, rpy = origin_of(part)
     written = _tensor(part)
     rotation = rotation_of(snapped(from_rpy(*rpy), snap))
+    # R I Rᵀ: the file gives the inertia in the axes of <origin>, the model needs it in those of the link.
     return Inertial(mass, center, rotation.congruence(written))
 
 
@@ -81,7 +88,7 @@ def origin_of(part: XmlPart) -> tuple[Vector, Vector]:
     """The ``<origin>`` child: position (m) and roll, pitch, yaw (rad); zeros where it is missing.
 
     Raises:
-        SourceError: there are two, or it does not hold three numbers each.
+        SourceError: there are two, or an attribute does not contain three numbers.
     """
     origin = part.child("origin")
     if origin is None:

@@ -1,4 +1,4 @@
-"""Joints that follow other joints: which follow, and which stand still because their master does."""
+"""Joints that follow others: which move, and which are fixed because their master is."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ if TYPE_CHECKING:
 
 
 class Followers(NamedTuple):
-    """What ``<mimic>`` comes to.
+    """Joints with ``<mimic>``, by whether they move.
 
     Attributes:
-        moving: those that follow a moving joint, directly or through others.
-        still: the constant position (rad or m) of each that follows a fixed one.
+        moving: joints that follow a moving joint, directly or through others.
+        still: constant coordinate (rad or m) of joints that follow a fixed one.
     """
 
     moving: Mapping[str, Mimic]
@@ -24,16 +24,20 @@ class Followers(NamedTuple):
 
 
 def followers_of(joints: Sequence[UrdfJoint], report: UrdfReport) -> Followers:
-    """Sort out the ``<mimic>`` of all joints.
+    """Resolve the ``<mimic>`` of all joints.
+
+    Args:
+        joints: all joints.
+        report: receives warnings and places errors.
 
     Raises:
-        SourceError: a joint follows itself, one that is not there, or one of several freedoms.
+        SourceError: a joint follows itself, an unknown joint, or one of several freedoms.
     """
     by_name = {joint.name: joint for joint in joints}
     mimics = {joint.name: joint.mimic for joint in joints if joint.mimic is not None}
     for name, mimic in mimics.items():
         _check_master(name, mimic, by_name, report)
-    # of each joint known to end at a master without <mimic>: its position there, None if it moves
+    # For each joint whose chain of masters has been followed: its constant coordinate, None if it moves.
     position: dict[str, float | None] = {}
     for name in mimics:
         _follow(name, mimics, by_name, position, report)
@@ -72,7 +76,7 @@ def _follow(
     position: dict[str, float | None],
     report: UrdfReport,
 ) -> None:
-    """Go from master to master to one that follows nothing, then note what this means on the way back."""
+    """Follow a chain of masters to its end, then record on the way back which joints move."""
     way: dict[str, None] = {}
     while name in mimics and name not in position:
         if name in way:

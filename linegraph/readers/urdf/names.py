@@ -1,4 +1,4 @@
-"""Names that give way: links and joints of a file that cannot have in equations the names they have in it."""
+"""Renaming of links and joints whose names are not possible in the equations."""
 
 from __future__ import annotations
 
@@ -18,22 +18,25 @@ if TYPE_CHECKING:
     from linegraph.readers.urdf.report import UrdfReport
 
 ROOT = "root"
-"""The free joint above the root link of a floating robot."""
+"""Name of the free joint above the root link of a floating robot."""
 
 
 def renamed(
     links: Sequence[UrdfLink], joints: Sequence[UrdfJoint], floating: bool, report: UrdfReport
 ) -> tuple[Sequence[UrdfLink], Sequence[UrdfJoint]]:
-    """Rename a link called like ground, and joints whose coordinates would have the name of something else.
+    """Rename a link called ground, and joints whose coordinates would clash with other names.
 
-    A joint x has the coordinate x with the rate x_dot, so that no other joint can be called x_dot; a planar
-    joint p has p_x, p_y and more. The later one in the file gives way: a suffix tells what it is.
+    A joint x has the coordinate x with the rate x_dot, so no other joint can be called x_dot; a planar
+    joint p has p_x, p_y and more. The later one in the file gets a suffix.
 
     Args:
         links: in the order of the file.
         joints: in the order of the file.
         floating: whether a free joint called root is above the root link.
-        report: gets a warning of each.
+        report: receives a warning for each change.
+
+    Returns:
+        Links and joints with references renamed as well.
     """
     new_links = _of_links(links, report)
     new_joints = _of_joints(joints, floating, report)

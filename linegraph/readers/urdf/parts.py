@@ -1,4 +1,4 @@
-"""Elements in context: strict access to children, words and numbers, with messages that name the place."""
+"""XML elements with context: strict access to children, strings and numbers; errors name the place."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from linegraph.readers.urdf.document import XmlElement
 
 LARGEST = 1e50
-"""No quantity of a robot in SI units is larger; what is computed from such numbers stays finite."""
+"""Limit of numbers: above any quantity of a robot in SI units, and products of several stay finite."""
 
 LONGEST_NUMBER = 400
-"""More characters than any way to write a double."""
+"""Longest number in characters: more than any representation of a double needs."""
 
-# The only numbers: not what float() takes besides (1_0, nan, inf, digits of other scripts).
-# No two parts can match the same digits, so that matching takes linear time.
+# Numbers as in URDF; float() would also accept 1_0, nan, inf and digits of other scripts.
+# No two parts can match the same digits, so matching takes linear time.
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _WORD = re.compile(r"[^ \t\r\n]+")
 _XACRO = ("${", "$(")
@@ -37,10 +37,12 @@ _RUN_XACRO = "is a xacro expression; run xacro first and give its output"
 
 
 class XmlPart(NamedTuple):
-    """An element and what it belongs to.
+    """An XML element with the thing it belongs to.
 
     Attributes:
-        thing: how messages call its owner, e.g. ``joint "elbow"``.
+        report: receives warnings and places errors.
+        thing: name of its owner in messages, such as ``joint "elbow"``.
+        element: the element.
     """
 
     report: UrdfReport
@@ -48,15 +50,20 @@ class XmlPart(NamedTuple):
     element: XmlElement
 
     def fail(self, problem: str) -> SourceError:
-        """The error that says this about the element; the caller raises it."""
+        """Return an error about the element; the caller raises it."""
         return self.report.error(self.element.line, self.thing, problem)
 
     def warn(self, text: str, sort: str = "") -> None:
-        """Note something about the element; `sort` is as of `UrdfReport.warn`."""
+        """Warn about the element.
+
+        Args:
+            text: the warning.
+            sort: text that replaces many warnings of this sort; see `UrdfReport.warn`.
+        """
         self.report.warn(self.element.line, self.thing, text, sort)
 
     def child(self, tag: str) -> XmlPart | None:
-        """The child of this tag, if there is one.
+        """The child element with a tag, if there is one.
 
         Raises:
             SourceError: there are two.
@@ -69,7 +76,7 @@ class XmlPart(NamedTuple):
         return XmlPart(self.report, self.thing, found[0]) if found else None
 
     def need(self, tag: str) -> XmlPart:
-        """The child of this tag.
+        """The child element with a tag.
 
         Raises:
             SourceError: there is none, or there are two.
@@ -81,10 +88,10 @@ class XmlPart(NamedTuple):
         return found
 
     def word(self, attribute: str) -> str:
-        """An attribute that must be there.
+        """A required attribute.
 
         Raises:
-            SourceError: it is not, or xacro was to write it.
+            SourceError: it is missing, or contains an expression of xacro.
         """
         text = self.element.attributes.get(attribute)
         if text is None:
@@ -98,15 +105,15 @@ class XmlPart(NamedTuple):
     def numbers(
         self, attribute: str, count: int, default: tuple[float, ...] | None = None
     ) -> tuple[float, ...]:
-        """Exactly `count` finite numbers, separated by white space.
+        """An attribute with exactly `count` finite numbers, separated by white space.
 
         Args:
             attribute: its name.
-            count: how many.
-            default: what a missing attribute stands for; None where it may not be missing.
+            count: how many numbers.
+            default: value of a missing attribute; None if it is required.
 
         Raises:
-            SourceError: anything else; the message shows the text.
+            SourceError: it is missing or has other content; the message shows the text.
         """
         if default is not None and attribute not in self.element.attributes:
             return default
@@ -125,19 +132,23 @@ class XmlPart(NamedTuple):
         return values
 
     def number(self, attribute: str, default: float | None = None) -> float:
-        """One finite number.
+        """An attribute with one finite number.
+
+        Args:
+            attribute: its name.
+            default: value of a missing attribute; None if it is required.
 
         Raises:
-            SourceError: anything else.
+            SourceError: it is missing or has other content.
         """
         return self.numbers(attribute, 1, None if default is None else (default,))[0]
 
     def check_children(self, known: Sequence[str], ignored: Collection[str]) -> None:
-        """Warn of children that mean nothing here, each tag once; prefixed ones are extensions.
+        """Warn about unknown children, once for each tag; those with a prefix are extensions.
 
         Args:
-            known: those that are read.
-            ignored: those that are known not to matter.
+            known: tags that are read.
+            ignored: tags known to have no effect.
         """
         said: set[str] = set()
         for child in self.element.children:
@@ -153,7 +164,12 @@ class XmlPart(NamedTuple):
             self.report.warn(child.line, self.thing, text)
 
     def check_attributes(self, known: Sequence[str], ignored: Collection[str] = ()) -> None:
-        """Warn of attributes that mean nothing here; those with a prefix are extensions."""
+        """Warn about unknown attributes; those with a prefix are extensions.
+
+        Args:
+            known: attributes that are read.
+            ignored: attributes known to have no effect.
+        """
         for attribute in self.element.attributes:
             if attribute not in known and attribute not in ignored and attribute[0] != "{":
                 missing = [name for name in known if name not in self.element.attributes]
@@ -163,10 +179,14 @@ class XmlPart(NamedTuple):
 
 
 def named_part(report: UrdfReport, element: XmlElement) -> tuple[str, XmlPart]:
-    """The name of a link or a joint, and the part under that name.
+    """The name of a link or joint, and the element with that name as its context.
+
+    Args:
+        report: receives warnings and places errors.
+        element: the ``<link>`` or ``<joint>``.
 
     Raises:
-        SourceError: the name is missing, blank or cannot be printed.
+        SourceError: the name is missing, blank or not printable.
     """
     name = XmlPart(report, f"<{element.tag}>", element).word("name")
     part = XmlPart(report, named(element.tag, name), element)
@@ -179,5 +199,5 @@ def named_part(report: UrdfReport, element: XmlElement) -> tuple[str, XmlPart]:
 
 
 def length(vector: Sequence[float]) -> float:
-    """The Euclidean norm, safe from underflow."""
+    """The Euclidean norm of a vector, without underflow."""
     return math.hypot(*vector)

@@ -1,4 +1,4 @@
-"""What is said about a file: errors and warnings, each with its place."""
+"""Errors and warnings about a URDF, each with its line."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 
 LONGEST_SHOWN = 80
 MOST_APART = 3
-"""So many warnings of one sort are told one by one."""
+"""Largest number of warnings of one sort that are listed one by one."""
 MOST_LISTED = 3
-"""So many names are listed where equal warnings are gathered."""
+"""Number of names listed where equal warnings are merged."""
 CLOSE = 0.75
-"""How alike the name of an unknown element and a known one are where one is meant to be the other."""
+"""Least similarity of an unknown tag and a known one for which a misspelling is assumed."""
 
 IGNORED = "ignored, though this may affect the motion"
-"""What to tell of an element that is not read and would change the equations."""
+"""Text about an element that is not read and may change the equations."""
 
 _MECHANICS = frozenset(
     {
@@ -44,12 +44,13 @@ _PART = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
 
 
 class Warned(NamedTuple):
-    """A warning, before equal ones are gathered.
+    """A warning before equal ones are merged.
 
     Attributes:
-        kind, name: of the part it is about: ``joint``, ``elbow``; the name is None where there is only one.
-        text: what it says.
-        sort: what many of this sort have in common; empty where the texts themselves are alike.
+        line: its line in the file.
+        kind, name: the thing it is about: ``joint``, ``elbow``; the name is None where there is only one.
+        text: the warning.
+        sort: text that replaces many warnings of this sort; empty to merge equal texts only.
     """
 
     line: int
@@ -66,7 +67,7 @@ class UrdfReport:
         source: the file as the user named it.
 
     Attributes:
-        dropped: elements that say something of the motion and are not read: lines and tags.
+        dropped: lines and tags of elements that may affect the motion and are not read.
     """
 
     def __init__(self, source: str) -> None:
@@ -76,24 +77,35 @@ class UrdfReport:
         self._warned: list[Warned] = []
 
     def warn(self, line: int, thing: str, text: str, sort: str = "") -> None:
-        """Note something that a user should know but that stops nothing.
+        """Note a warning.
 
         Args:
-            line: where it is.
-            thing: what it is about, as messages call it.
-            text: what to tell.
-            sort: what to tell where many of this sort are gathered; else those of equal text are.
+            line: its line.
+            thing: the thing it is about, as messages name it.
+            text: the warning.
+            sort: text that replaces many warnings of this sort; by default equal texts are merged.
         """
         kind, quote, name = thing.partition(' "')
         self._warned.append(Warned(line, kind, name[:-1] if quote else None, text, sort))
 
     def error(self, line: int | None, thing: str, problem: str) -> SourceError:
-        """The error that says this at this place; the caller raises it."""
+        """Return an error with its place; the caller raises it.
+
+        Args:
+            line: its line; None for the whole file.
+            thing: the thing at fault, as messages name it.
+            problem: what is wrong with it.
+        """
         return SourceError(self.source, line, thing, problem)
 
     @contextmanager
     def placed(self, line: int, thing: str) -> Iterator[None]:
-        """Give errors of the model builder the place in the file that caused them."""
+        """Add the place to errors of the model builder.
+
+        Args:
+            line: the line that caused them.
+            thing: the thing at fault, as messages name it.
+        """
         try:
             yield
         except ModelError as error:
@@ -101,7 +113,7 @@ class UrdfReport:
 
     @property
     def warnings(self) -> list[str]:
-        """All warnings in the order of the file, each ``source:line: thing: text``, equal ones as one."""
+        """All warnings in the order of the file, ``source:line: thing: text``, equal ones merged."""
         ordered = sorted(self._warned, key=lambda warned: warned.line)
         sorts = Counter((w.kind, w.sort) for w in ordered if w.sort)
         groups: dict[tuple[str, str], list[Warned]] = {}
@@ -117,7 +129,7 @@ class UrdfReport:
 
 
 def _things(group: Sequence[Warned]) -> str:
-    """What warnings of one text are about: one thing by its name, of several how many and the first."""
+    """The thing that merged warnings are about: its name, or the number of things and the first names."""
     kind = group[0].kind
     names = list(dict.fromkeys(w.name for w in group if w.name is not None))
     if not names:
@@ -130,7 +142,11 @@ def _things(group: Sequence[Warned]) -> str:
 
 
 def shown(text: str, longest: int = LONGEST_SHOWN) -> str:
-    r"""File text made fit for a message: on one line, printable, not too long.
+    r"""Make text of a file fit for a message: on one line, printable, not too long.
+
+    Args:
+        text: the text.
+        longest: largest number of characters.
 
     Example:
         >>> print(shown("a" + chr(10) + "b"))
@@ -141,12 +157,17 @@ def shown(text: str, longest: int = LONGEST_SHOWN) -> str:
 
 
 def named(kind: str, name: str) -> str:
-    """How messages call a part of the robot: ``joint "elbow"``."""
+    """Name of a part of the robot in messages: ``joint "elbow"``.
+
+    Args:
+        kind: ``link``, ``joint`` or another tag.
+        name: its name.
+    """
     return f'{kind} "{shown(name)}"'
 
 
 def mechanical(tag: str) -> bool:
-    """Whether the name of an element, its prefix left out, tells of mechanics.
+    """Whether the name of an element, without its prefix, contains a word of mechanics.
 
     Example:
         >>> mechanical("drake:rotor_inertia"), mechanical("loopJoint"), mechanical("d:joints_color_map")
@@ -157,13 +178,16 @@ def mechanical(tag: str) -> bool:
 
 
 def nearest(name: str, known: Iterable[str], alike: float = 0.6) -> str:
-    """A hint that ends a message: the known name most like `name`, or nothing.
+    """A hint at the end of a message: the most similar known name, or nothing.
 
-    `alike` is how much, between 0 and 1.
+    Args:
+        name: the unknown name.
+        known: the known names.
+        alike: least similarity, between 0 and 1.
     """
     from difflib import get_close_matches
 
-    # difflib compares with every name: hostile files must not make that slow
+    # difflib compares with every name; the limits keep hostile files from making that slow.
     candidates = [k for k in known if len(k) <= 4 * LONGEST_SHOWN][:5000]
     close = get_close_matches(name[: 4 * LONGEST_SHOWN], candidates, 1, alike)
     return f'; did you mean "{shown(close[0])}"?' if close else ""

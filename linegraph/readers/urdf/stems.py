@@ -1,4 +1,4 @@
-"""Names for parameters, made from names of links and joints that may hold anything."""
+"""Names of parameters, from names of links and joints that may contain any characters."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
 
 MOMENTS = ("m", "mx", "my", "mz", "Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz")
-"""Mass, first moment and inertia of a link: what comes before its stem."""
+"""Prefixes of a link's parameters: mass, first moment and inertia."""
 OFFSETS = ("x", "y", "z")
-"""The position of a joint: what comes before its stem."""
+"""Prefixes of a joint's parameters: its position."""
 
 _LONGEST = 100
 _RUN = re.compile(r"[A-Za-z0-9]+")
@@ -20,15 +20,17 @@ _RUN = re.compile(r"[A-Za-z0-9]+")
 def stems(
     names: Iterable[str], prefixes: Collection[str], taken: Collection[str]
 ) -> dict[str, str]:
-    """A stem for each name, such that ``PREFIX_STEM`` is a C identifier and unlike every other.
+    """Choose a stem for each name, so that ``PREFIX_STEM`` is a unique C identifier.
 
-    Everything but ASCII letters and digits becomes one ``_``. Where two names come out the same, the
-    later ones get a number.
+    Everything but ASCII letters and digits becomes one ``_``. Later ones of equal results get a number.
 
     Args:
-        names: of links or of joints, each once.
-        prefixes: what is put before the stem.
-        taken: identifiers that may not arise, e.g. of coordinates.
+        names: names of links or of joints, each once.
+        prefixes: prefixes of the identifiers.
+        taken: identifiers already in use, such as those of coordinates.
+
+    Returns:
+        The stem of each name.
 
     Example:
         >>> stems(["left arm", "left-arm", "手"], ["m"], [])
@@ -44,7 +46,8 @@ def stems(
         while stem in used or any(f"{prefix}_{stem}" in reserved for prefix in prefixes):
             number += 1
             stem = f"{plain}_{number}"
-        # numbering goes on from here, or many equal names would take quadratic time
+        # Continue numbering from here; starting at 1 each time would take quadratic time for many equal
+        # names.
         last[plain] = number
         used.add(stem)
         chosen[name] = stem

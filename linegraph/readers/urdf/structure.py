@@ -1,4 +1,4 @@
-"""The tree that links and joints form, or what keeps them from forming one."""
+"""The tree that links and joints form, and the errors where they form none."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class Tree(NamedTuple):
     """The robot as a tree.
 
     Attributes:
-        root: the link that no joint carries.
-        links: by name.
-        walk: the joints depth first from the root, those of one link in the order of the file.
+        root: the link that is no joint's child.
+        links: links by name.
+        walk: joints depth first from the root, those of one link in the order of the file.
     """
 
     root: UrdfLink
@@ -45,9 +45,9 @@ def tree_of(
     Args:
         links: in the order of the file.
         joints: in the order of the file.
-        line: of the robot, for what no single element is to blame for.
+        line: line of the robot, for errors of no single element.
         floating: whether a free joint is above the root link.
-        report: places the errors.
+        report: receives warnings and places errors.
 
     Raises:
         SourceError: names clash, a joint names no link, or the links form no single tree.
@@ -84,7 +84,7 @@ def _require_unique(kind: str, found: Sequence[Named], report: UrdfReport) -> No
 def _carriers(
     links: Mapping[str, UrdfLink], joints: Sequence[UrdfJoint], report: UrdfReport
 ) -> dict[str, UrdfJoint]:
-    """The joint that carries each link."""
+    """The joint whose child each link is."""
     carriers: dict[str, UrdfJoint] = {}
     for joint in joints:
         who = named("joint", joint.name)
@@ -125,7 +125,7 @@ def _depth_first(root: str, joints: Sequence[UrdfJoint]) -> tuple[UrdfJoint, ...
     for joint in joints:
         beyond.setdefault(joint.parent, []).append(joint)
     walk: list[UrdfJoint] = []
-    # not recursive: a chain may be longer than Python's stack
+    # Not recursive: a chain may be longer than Python's stack allows.
     pending: list[Iterator[UrdfJoint]] = [iter(beyond.get(root, ()))]
     while pending:
         for joint in pending[-1]:
@@ -138,7 +138,7 @@ def _depth_first(root: str, joints: Sequence[UrdfJoint]) -> tuple[UrdfJoint, ...
 
 
 def _circle(start: UrdfJoint, carriers: Mapping[str, UrdfJoint], report: UrdfReport) -> SourceError:
-    """The error for joints that no root reaches: from there toward the root, the way closes."""
+    """The error for joints not reached from the root: walking toward it, they form a cycle."""
     seen: dict[str, UrdfJoint] = {}
     joint = start
     while joint.name not in seen:
@@ -155,7 +155,7 @@ def _circle(start: UrdfJoint, carriers: Mapping[str, UrdfJoint], report: UrdfRep
 def _check_vertices(
     links: Sequence[UrdfLink], joints: Sequence[UrdfJoint], report: UrdfReport
 ) -> None:
-    """Names of the system graph's vertices are joined by dots, so names with dots can collide."""
+    """Refuse clashes of the system graph's vertices, whose names are joined by dots."""
     taken: dict[str, str] = {}
 
     def take(vertex: str, line: int, who: str) -> None:
@@ -175,7 +175,7 @@ def _check_vertices(
 def _check_edges(
     links: Sequence[UrdfLink], joints: Sequence[UrdfJoint], report: UrdfReport
 ) -> None:
-    """A joint's edge has the joint's name; bodies' own edges have a slash in theirs."""
+    """Refuse joints named like an edge of a body, which has a slash in its name."""
     owners = {f"{link.name}/{edge}": link for link in links for edge in ("inertia", "arm")}
     arms = {f"{joint.parent}/arm.{joint.name}" for joint in joints}
     for joint in joints:

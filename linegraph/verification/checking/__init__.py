@@ -1,13 +1,13 @@
-"""Whether a model's equations hold: `linegraph check`.
+"""`linegraph check`: whether the equations derived for a model hold.
 
-At random states, drawn where the model is defined, the equations of motion that would be emitted are compared
-with Newton's and Euler's equations of every body, from derivatives of its place (`golden`): another route.
-So are the same derivation over floats and the paper's matrices multiplied out. With loops the number of
-freedoms, accelerations and multipliers are compared as well. Along the motion the rate of energy is the power
-of all that is applied, through times across sums up to zero in each subspace, and every component of a
-network stores or turns into heat what it takes in.
+At random admissible states the equations of motion that would be emitted are compared with Newton's and
+Euler's equations of every body (`golden`), which are computed independently. The same derivation over
+floats and the paper's matrices are compared with these, too. With loops, so are the number of degrees of
+freedom, accelerations and multipliers. Along the motion the rate of energy must equal the power of all
+applied forces, the sum of through times across must vanish in each subspace, and every component of a
+network must store or turn into heat the power that it takes in.
 
-Each number is compared on the scale of the terms that it is made of, as golden vectors are.
+Each number is compared on the scale of the terms that it is the sum of, as in golden vectors.
 """
 
 from linegraph.verification.checking.findings import TOLERANCE, Comparison, Findings

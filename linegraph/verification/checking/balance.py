@@ -1,10 +1,11 @@
-"""The energy balance of each component of a network, along the motion.
+"""Energy balance of each component of a network, along the motion.
 
-    power taken in at all edges = d/dt stored + turned into heat
+    power taken in at all edges = d/dt stored energy + heat
 
-The rate of what is stored is no formula of the derivation: the whole state, inputs and time move a complex
-step along the motion, and the stored energy is evaluated there. So what changes a store from outside counts:
-a capacitance that follows a joint takes or gives energy, and no edge of the component accounts for it.
+The rate of stored energy is not taken from a formula of the derivation. The whole state, inputs and time
+take a complex step along the motion, and the stored energy is evaluated there. Power that changes a store
+from outside is therefore included: a capacitance that depends on a joint's position exchanges energy with
+the mechanism, and no edge of the component carries it.
 """
 
 from __future__ import annotations
@@ -21,8 +22,9 @@ if TYPE_CHECKING:
     from linegraph.verification.golden.point import Point
 
 FINE = 1e-2
-"""Powers of one component balance more finely than what is solved for: a small change of a store must be seen
-beside all that flows through it."""
+"""Factor on sizes: balances of one component are checked more finely than solved quantities, so that a small
+change of stored energy shows beside a large power through the component.
+"""
 
 DRIVEN = "what it stores is changed from outside, by {}"
 UNKNOWN = "the energy that it stores is not known"
@@ -31,7 +33,13 @@ SOURCE = "it is a source"
 
 
 def balances(point: Point) -> dict[str, tuple[float, float]]:
-    """Of each component that can be judged what it stores and heats less what it takes in, and the size."""
+    """Power imbalance of each component that can be judged, and its size (W).
+
+    The imbalance is the rate of stored energy plus heat less the power taken in at all edges.
+
+    Args:
+        point: the state.
+    """
     exchange = point.edges.cuts.acting.exchange
     if exchange is None:
         return {}
@@ -57,7 +65,7 @@ def balances(point: Point) -> dict[str, tuple[float, float]]:
 
 
 def unjudged_components(derivation: Derived) -> dict[str, str]:
-    """Components whose balance says nothing, and why."""
+    """Components whose balance proves nothing, each with the reason."""
     network = derivation.formulation.network
     if network is None:
         return {}
@@ -77,7 +85,10 @@ def unjudged_components(derivation: Derived) -> dict[str, str]:
 
 
 def _outside(network: Network, component: Any) -> str:
-    """What from outside of the model changes what a component stores: the time, or an input."""
+    """The variable from outside the model that changes a component's stored energy, in words.
+
+    Empty if there is none.
+    """
     support = network.laws.calculus.support(network.energy[component.name])
     for kind, place in sorted(support, key=repr):
         if kind == "t":
@@ -88,7 +99,7 @@ def _outside(network: Network, component: Any) -> str:
 
 
 def _stored_rates(point: Point) -> dict[str, float]:
-    """The rate of what each component stores."""
+    """Rate of the stored energy of each component (W)."""
     (a, _), walk = point.motion[0], point.walk
     rates = walk.rates[0]
     q = [complex(x, STEP * float(dx)) for x, dx in zip(point.q, rates, strict=True)]
@@ -102,13 +113,13 @@ def _stored_rates(point: Point) -> dict[str, float]:
 
 
 def _input_rates(point: Point) -> list[float]:
-    """The rate of each input, where another input gives it; else none."""
+    """Rate of each input where another input gives it; otherwise 0."""
     slopes = point.walk.tree.layout.slopes
     return [point.u[slopes[k]] if k in slopes else 0.0 for k in range(len(point.u))]
 
 
 def _stored_sizes(point: Point, exchange: Exchange) -> dict[str, float]:
-    """How large what the rate of each energy is made of is: its slopes times those of its states."""
+    """Size of the rate of each stored energy: its slopes times the sizes of the states' rates."""
     network, (_, of_a) = exchange.network, point.motion[0]
     found = {}
     for name, stored in network.energy.items():

@@ -1,4 +1,4 @@
-"""What a check has found: comparisons, each on the scale of what it is made of, and what was not judged."""
+"""Results of a check: comparisons on the scale of their terms, and quantities that were not judged."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 _LEAST = 1e-300
 TOLERANCE = 2e-12
-"""Worst difference that rounding explains, relative to the terms that a number is made of: seldom 1e-13."""
+"""Largest difference, relative to the terms of a number, that rounding explains; it seldom exceeds 1e-13."""
 
 PROGRAM, FLOATS, PAPER, LOOPS = "emitted program", "derivation over floats", "paper", "loops"
 POWER, AUDIT, COMPONENTS = "power", "audit", "components"
@@ -19,13 +19,13 @@ POWER, AUDIT, COMPONENTS = "power", "audit", "components"
 
 @dataclass(frozen=True)
 class Comparison:
-    """One quantity by two routes, at all states.
+    """One quantity computed by two routes, over all states.
 
     Attributes:
-        group: which routes met.
+        group: the two routes.
         what: the quantity.
-        worst: the worst difference, relative to the largest terms its entry is made of.
-        place: the entry where it is worst.
+        worst: the worst difference, relative to the largest size of its entry.
+        place: name of the entry where it is worst.
     """
 
     group: str
@@ -41,12 +41,12 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Findings:
-    """What a check has found.
+    """The result of a check.
 
     Attributes:
-        comparisons: all that was compared.
-        unjudged: what could not be, and why.
-        states: at how many states.
+        comparisons: all comparisons.
+        unjudged: quantities that could not be compared, each with the reason.
+        states: the number of states.
     """
 
     comparisons: tuple[Comparison, ...]
@@ -55,47 +55,47 @@ class Findings:
 
     @property
     def good(self) -> bool:
-        """Whether all differences are rounding."""
+        """Whether rounding explains all differences."""
         return all(comparison.good for comparison in self.comparisons)
 
     @property
     def bad(self) -> tuple[Comparison, ...]:
-        """What differs by more than rounding."""
+        """Comparisons with differences that rounding does not explain."""
         return tuple(comparison for comparison in self.comparisons if not comparison.good)
 
     def worst(self, group: str) -> float | None:
-        """The worst difference of a group; None where nothing of it was judged."""
+        """The worst difference of a group; None where nothing in it was compared."""
         found = [c.worst for c in self.comparisons if c.group == group]
         return max(found, default=None)
 
     @property
     def program(self) -> float:
-        """Of the emitted program from Newton and Euler."""
+        """Worst difference of the emitted program from Newton and Euler."""
         return self.worst(PROGRAM) or 0.0
 
     @property
     def paper(self) -> float | None:
-        """Of the paper's matrices from Newton and Euler."""
+        """Worst difference of the paper's matrices from Newton and Euler; None if not compared."""
         return self.worst(PAPER)
 
     @property
     def power(self) -> float | None:
-        """Of the power balance of mechanics."""
+        """Worst relative imbalance of power in mechanics; None if not compared."""
         return self.worst(POWER)
 
     @property
     def audit(self) -> float | None:
-        """Of the sums of through times across."""
+        """Worst relative sum of through times across; None if not compared."""
         return self.worst(AUDIT)
 
 
 @dataclass
 class Tally:
-    """Differences gathered over states: what they are relative to is known only at the end.
+    """Differences collected over states; their scales are known only after the last one.
 
     Attributes:
-        names: what the entries of a quantity are called, by quantity.
-        loud: the number of the loud state that is noted, if it is one: its scale is its own.
+        names: names of the entries of each quantity.
+        loud: index of the present state if it is loud and so has its own scale, else None.
     """
 
     names: Mapping[str, Sequence[str]] = field(default_factory=dict)
@@ -106,16 +106,23 @@ class Tally:
     def note(
         self, group: str, what: str, found: Any, expected: Any, size: Any, *, alone: bool = False
     ) -> None:
-        """A quantity at a state: by a route, as expected, and how large what it is made of is.
+        """Record one quantity at one state.
 
-        With `alone` it is compared on the scale of this state, else on that of all states that are not loud.
+        Args:
+            group: the two routes.
+            what: the quantity.
+            found: values by the route under test; any shape, flattened.
+            expected: values by the independent route, as many.
+            size: sizes of the expected values.
+            alone: compare on this state's scale; otherwise on the largest scale of all states that are not
+                loud.
         """
         import numpy as np
 
         found, expected = (np.asarray(x, float).reshape(-1) for x in (found, expected))
         scale = np.maximum(np.abs(expected), np.abs(np.asarray(size, float)).reshape(-1))
         error = np.abs(found - expected) if len(found) == len(expected) else np.full(1, np.inf)
-        # what is no number is as wrong as can be
+        # NaN and infinities count as infinite errors.
         error = np.where(np.isfinite(error), error, np.inf)
         if alone:
             error = np.where(error == 0, 0.0, error / np.where(scale > 0, scale, _LEAST))
@@ -127,7 +134,7 @@ class Tally:
         self._errors[key], self._scales[key] = error, scale
 
     def comparisons(self) -> tuple[Comparison, ...]:
-        """All quantities, in the order in which they were met."""
+        """All comparisons in the order first recorded; the worst of calm and loud states counts."""
         import numpy as np
 
         found: dict[tuple[str, str], Comparison] = {}
@@ -143,12 +150,12 @@ class Tally:
         return tuple(found.values())
 
     def _comparison(self, group: str, what: str, errors: Any, scales: Any) -> Comparison:
-        """One quantity at all states that have one scale."""
+        """One quantity over all states that share a scale."""
         import numpy as np
 
         if len(scales) != len(errors):
             return Comparison(group, what, float("inf"))
-        # what is made of nothing is zero
+        # An entry without terms must be exactly zero.
         ratios = np.where(errors == 0, 0.0, errors / np.where(scales > 0, scales, _LEAST))
         worst = float(ratios.max(initial=0.0))
         place = int(ratios.argmax()) if len(ratios) else 0

@@ -1,4 +1,4 @@
-"""Findings for a reader."""
+"""Text of a check's result."""
 
 from __future__ import annotations
 
@@ -26,12 +26,27 @@ _WIDTH = 41
 
 
 def counted(count: int, what: str, several: str = "") -> str:
-    """A number of things: "1 input", "2 inputs"."""
+    """Count with its noun: "1 input", "2 inputs".
+
+    Args:
+        count: the number.
+        what: the noun in the singular.
+        several: its plural; by default with -s.
+    """
     return f"{count} {what if count == 1 else several or what + 's'}"
 
 
 def report(derivation: Derived, findings: Findings, heading: Callable[[str], str] = str) -> str:
-    """The findings for a reader."""
+    """Write the result of a check as text.
+
+    Args:
+        derivation: the model.
+        findings: the result of `check`.
+        heading: how to mark a heading, such as bold; by default unchanged.
+
+    Returns:
+        The model's size, coordinates, worst differences and verdict, ending in a newline.
+    """
     tree = derivation.structure
     lines = [heading(f"model {derivation.system.name}")]
     freedoms = derivation.assembled.freedoms if tree.closed else tree.layout.mechanical

@@ -1,4 +1,4 @@
-"""The routes to the equations of motion at a state: the program, the derivation over floats, the paper."""
+"""Routes to M, h and accelerations at a state: program, derivation over floats, the paper's matrices."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ Vector = list[float]
 
 @dataclass(frozen=True)
 class _State:
-    """A model at a state: the routes to M, h and the accelerations that share its derivation."""
+    """A model at a state, with the routes to M, h and accelerations that share its derivation."""
 
     point: Point
     derivation: Derived
@@ -69,20 +69,20 @@ class _State:
         return [x for row in self.equations.jacobian for x in row], self.equations.constraint_bias
 
     def emitted(self, module: Module) -> tuple[list[Vector], Vector]:
-        """M and h by the program that would be emitted."""
+        """M and h by interpreting the program that would be emitted."""
         M, h = self.run(module, "equations")
         size = len(self.v)
         return [M[i * size : (i + 1) * size] for i in range(size)], h
 
     def accelerations(self, module: Module) -> Vector:
-        """v̇ by the program that would be emitted, without constraints."""
+        """v̇ by the program that would be emitted, for models without constraints."""
         (a,) = self.run(module, "forward_dynamics")
         return a
 
     def constrained_motion(self, module: Module, function: Function) -> tuple[Vector, Vector]:
-        """v̇ and λ by the emitted Python: what it iterates, or decides, no interpreter of programs knows.
+        """v̇ and λ by the emitted Python, since the interpreter knows no loops and branches.
 
-        Where it reports a status instead, v̇ and λ are no numbers.
+        NaN where it reports an error status.
         """
         import numpy
 
@@ -96,14 +96,14 @@ class _State:
         return list(map(float, a)), list(map(float, lam))
 
     def run(self, module: Module, name: str) -> list[Vector]:
-        """The results of one of the programs that would be emitted."""
+        """Results of one of the programs that would be emitted."""
         exchange = self.equations.networks
         loop = exchange.solved if exchange is not None and exchange.network.loop else []
         given = {"q": self.q, "v": self.v, "a": self.point.a, "loop": loop}
         return self._run(module, name, {**given, **self.algebra.arguments})
 
     def _run(self, module: Module, name: str, given: dict[str, Any]) -> list[Vector]:
-        """Those of a program and of what it calls."""
+        """Results of a program, running the programs that it calls first."""
         programs = {p.name: p for p in module.programs if isinstance(p, Program)}
         program = programs[name]
         if program.handed:
@@ -116,11 +116,16 @@ class _State:
         return run(program, given)
 
     def forces(self) -> Vector:
-        """Q: joint efforts and what inputs drive."""
+        """Q (n): joint efforts and forces of inputs."""
         return [float(x) for x in self.equations.forces]
 
     def audit_sums(self, acceleration: Vector, multipliers: Vector) -> Any:
-        """What the powers of all edges sum up to in each subspace."""
+        """Sum of the powers of all edges in each subspace (W).
+
+        Args:
+            acceleration: v̇, n.
+            multipliers: λ, one for each constraint.
+        """
         import numpy
 
         scheme = InverseScheme(self.equations.chords, acceleration, multipliers)
@@ -129,7 +134,7 @@ class _State:
         return numpy.array([float(x) for x in (*sums, *domains.values())])
 
     def printed(self) -> tuple[list[Vector], Vector]:
-        """M and h by the paper's matrices; what elements add is projected by the float reference."""
+        """M and h by the paper's matrices; forces of elements are projected by the float reference."""
         of = self.equations
         matrices = paper_matrices(of.state)
         loads = of.along(of.passive)
@@ -139,7 +144,7 @@ class _State:
         return rows, [-b - load for b, load in zip(matrices.B, loads, strict=True)]
 
     def power_balance(self, acceleration: Vector) -> tuple[float, float, float]:
-        """The rate of kinetic and gravitational energy, the power of all that is applied, and their size."""
+        """Rate of kinetic and gravitational energy, power of all applied forces, and their size (W)."""
         import numpy as np
 
         passive = self.equations.along(self.equations.passive)
@@ -147,7 +152,7 @@ class _State:
         both = list(zip(self.v, self.forces(), passive, strict=True))[:first]
         power = sum(v * (active + own) for v, active, own in both)
         for i, j, entry in self.equations.stored:
-            # what a rotor behind a gear takes is no power applied to the bodies
+            # Power that accelerates a rotor behind a gear is not applied to the bodies.
             power -= self.v[i] * entry * acceleration[j] if i < first else 0.0
         of_M, of_force = self.point.bodies.mass_matrix[1], self.point.force[1]
         (_, of_a) = self.point.motion[0]
@@ -156,7 +161,7 @@ class _State:
         return float(self._energy_rate(acceleration)), float(power), size
 
     def _energy_rate(self, acceleration: Sequence[float]) -> float:
-        """The rate of kinetic and gravitational energy, by calculating with jets."""
+        """Rate of kinetic and gravitational energy, by jets."""
         rates = self.equations.coordinate_rates
         q = [Jet(x, dx, 0) for x, dx in zip(self.q, rates, strict=True)]
         v = [Jet(x, dx, 0) for x, dx in zip(self.v, acceleration, strict=True)]

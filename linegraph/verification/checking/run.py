@@ -1,4 +1,4 @@
-"""A check, from drawn states to findings."""
+"""A check from the random states to the findings."""
 
 from __future__ import annotations
 
@@ -36,13 +36,20 @@ if TYPE_CHECKING:
     from linegraph.verification.golden.point import Point
 
 STATES = 12
-"""At how many states a model is checked; at every second one its parameters differ from its own values."""
+"""Number of states of a check; at every second one parameters differ from the model's own values."""
 
 NEARLY_SINGULAR = "at all states that were tried the mass matrix is nearly singular"
 
 
 def check(derivation: Derived, seed: int = 0) -> Findings:
-    """Compare the routes at `STATES` random states.
+    """Compare the routes to the equations of motion at `STATES` random states.
+
+    Args:
+        derivation: the model.
+        seed: seed of the random states.
+
+    Returns:
+        The comparisons, with differences relative to the terms of each number.
 
     Raises:
         ModelError: a law is defined at no state that was tried; names the law and its place in the file.
@@ -55,7 +62,7 @@ def check(derivation: Derived, seed: int = 0) -> Findings:
 
 def _check(derivation: Derived, seed: int) -> Findings:
     tree = derivation.structure
-    # first of all, since what the structure forbids is no law that bounds could help
+    # First, so that errors of structure are reported as such and not as laws that need bounds.
     module = module_of(derivation, "checked")
     points, moving = _points(derivation, seed)
     tally = Tally(_names(derivation))
@@ -76,7 +83,7 @@ def _check(derivation: Derived, seed: int) -> Findings:
         sums = state.audit_sums(a.tolist(), lam.tolist())
         tally.note(AUDIT, "sums of through times across", sums, 0 * sums, point.edges.sums[1])
         for still in (point, replace(point, u=[0.0] * len(point.u)))[: 1 + bool(point.u)]:
-            # what a source drives hides what a store alone makes
+            # Sources hide a store's own imbalance, so balances are checked without inputs, too.
             for name, (gain, size) in _balances(still).items():
                 tally.note(COMPONENTS, f"power of {name}", gain, 0.0, size, alone=True)
     found = tally.comparisons()
@@ -89,10 +96,11 @@ def _points(derivation: Derived, seed: int) -> tuple[list[Point], bool]:
     """States, and whether accelerations are known at them.
 
     Raises:
-        ModelError: there are none; names the law that is not defined.
+        ModelError: no admissible state was found; names the law that is undefined.
     """
     equations_: Asked = {"M": lambda p: p.bodies.mass_matrix, "h": lambda p: p.bodies.bias}
     solved: Asked = {"a": lambda p: p.motion[0]}
+    # If M is nearly singular at all states, at least M and h can be compared.
     for moving in (False,) if derivation.idle else (True, False):
         asked = [equations_, solved] if moving else [equations_]
         drawing = Drawing(derivation, random.Random(seed), Kept(), asked)
@@ -105,7 +113,7 @@ def _points(derivation: Derived, seed: int) -> tuple[list[Point], bool]:
 
 
 def _equations(tally: Tally, state: _State, point: Point, module: Module) -> None:
-    """M, h and τ of all routes against Newton's and Euler's equations."""
+    """Compare M, h and τ of all routes with Newton's and Euler's equations."""
     (M, of_M), (h, of_h) = point.bodies.mass_matrix, point.bodies.bias
     routes: list[tuple[str, Any]] = [
         (PROGRAM, state.emitted(module)),
@@ -123,7 +131,7 @@ def _equations(tally: Tally, state: _State, point: Point, module: Module) -> Non
 def _motion(
     tally: Tally, state: _State, point: Point, module: Module, function: Function | None
 ) -> None:
-    """What is emitted for accelerations and multipliers, and what they are solved from."""
+    """Compare emitted accelerations and multipliers, and the quantities they are solved from."""
     (a, of_a), (lam, of_lam) = point.motion
     if function is None:
         tally.note(PROGRAM, "accelerations", state.accelerations(module), a, of_a)
@@ -152,7 +160,7 @@ def _motion(
 
 
 def _balances(point: Point) -> dict[str, tuple[float, float]]:
-    """The balances at a state; none where laws are not defined without inputs."""
+    """Balances at a state; empty where laws are undefined without inputs."""
     try:
         return balances(point)
     except (ModelError, ArithmeticError):
@@ -160,7 +168,7 @@ def _balances(point: Point) -> dict[str, tuple[float, float]]:
 
 
 def _freedoms(derivation: Derived, points: list[Point]) -> Comparison:
-    """Whether the assembly counts as many freedoms as the Jacobian leaves at the states."""
+    """Whether the assembly counts as many degrees of freedom as the rank of J leaves."""
     mechanical = derivation.structure.layout.mechanical
     expected = min(mechanical - point.rank for point in points)
     found = derivation.assembled.freedoms
@@ -177,7 +185,7 @@ def _driven(derivation: Derived) -> bool:
 
 
 def _unjudged(derivation: Derived, *, moving: bool) -> tuple[tuple[str, str], ...]:
-    """What is not compared, and why."""
+    """Quantities that are not compared, each with the reason."""
     tree = derivation.structure
     found: list[tuple[str, str]] = []
     if tree.levelled:
@@ -203,7 +211,7 @@ def _unjudged(derivation: Derived, *, moving: bool) -> tuple[tuple[str, str], ..
 
 
 def _names(derivation: Derived) -> dict[str, list[str]]:
-    """What entries are called."""
+    """Names of the entries of each quantity."""
     tree = derivation.structure
     v = [quantity.name for quantity in tree.velocities]
     rows = [e.multiplier.name for e in equations(tree)]

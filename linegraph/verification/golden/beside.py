@@ -1,8 +1,9 @@
-"""Functions that are compared beside the constraints: what vanishes on these is not seen on them.
+"""Which functions are compared at states that violate the constraints.
 
-In a parallelogram two angles are always equal, and where one is read in place of the other nothing changes.
-Functions of bodies alone are right at any coordinates and velocities, and are asked there. What constraints
-make of velocities and accelerations (J and γ) is right where these hold, and is asked there.
+On the constraints an error can hide. In a parallelogram two angles are always equal, so reading one in
+place of the other changes nothing there. Functions that involve bodies alone hold at any q and v, and are
+therefore compared at states off the constraints. Functions that involve the constraints (J, γ and all that
+is solved with them) hold on the constraints only and are compared there.
 """
 
 from __future__ import annotations
@@ -35,14 +36,23 @@ ANYWHERE = (
     "regressor",
     "inertial_parameters",
 )
-"""What knows of bodies, and of no constraint."""
+"""Functions of the bodies alone; they hold at any coordinates and velocities."""
 
 OF_FRAMES = ("_pose", "_velocity", "_jacobian", "_jacobian_dot_v")
-"""How the names of such functions of frames end."""
+"""Endings of the names of a frame's functions that hold at any coordinates and velocities."""
 
 
 def beside(label: str, reference: Reference) -> Reference:
-    """The same beside the constraints; what knows of constraints as it is."""
+    """Move a function's comparison off the constraints, if its results hold there.
+
+    Args:
+        label: key of the reference in the register, mostly the function's name.
+        reference: the reference at states on the constraints.
+
+    Returns:
+        A reference with arguments ``q_off``, ``v_off`` and results evaluated there; `reference` itself for
+        functions that involve the constraints.
+    """
     if label not in ANYWHERE and not (label.startswith("frame_") and label.endswith(OF_FRAMES)):
         return reference
     given = {"q": "q_off", "v": "v_off"} | dict(reference.given)
@@ -53,7 +63,7 @@ def beside(label: str, reference: Reference) -> Reference:
 
 
 def _beside(made: Callable[[Point], Valued]) -> Callable[[Point], Valued]:
-    """What gives a result where loops are not closed."""
+    """Evaluate a result at the point's coordinates and velocities off the constraints."""
 
     def found(point: Point) -> Valued:
         return made(point.beside)

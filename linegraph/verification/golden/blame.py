@@ -1,4 +1,4 @@
-"""Whose law it is that is not defined: what a user must know to bound the states."""
+"""Name the component whose law is undefined at every state tried, and advise how to bound the states."""
 
 from __future__ import annotations
 
@@ -22,12 +22,16 @@ BOUND = (
 
 
 def undefined(derivation: Derived, error: ModelError, numeric: Numeric | None) -> ModelError:
-    """An error of a law that is defined nowhere, with the component and with what to do.
+    """Turn the error of a law that is defined at no state into one that names the component and the remedy.
 
     Args:
         derivation: the model.
-        error: what a law said; laws of networks do not say whose they are.
-        numeric: the model at a state where it was not defined, for its inputs, time and parameters.
+        error: the error raised by the law; laws of networks raise it with an empty `thing`.
+        numeric: the model at a state where the law was undefined, for its inputs, time and parameters; None
+            where the model itself could not be evaluated.
+
+    Returns:
+        An error for the component, its message followed by `BOUND`.
     """
     thing, problem = error.thing, error.problem
     if not thing:
@@ -37,10 +41,10 @@ def undefined(derivation: Derived, error: ModelError, numeric: Numeric | None) -
 
 
 def _owner(derivation: Derived, function: str, numeric: Numeric | None) -> tuple[str, list[str]]:
-    """The component of a network whose law is not defined, and others it may be.
+    """Find the component of a network whose law is undefined, and further candidates.
 
-    These are the components whose own expressions use the function that has no value; of several those whose
-    expressions have none for the inputs, the time and the parameters.
+    Candidates are the components whose own expressions use the function that has no value. Of several,
+    those remain whose expressions have no value for the given inputs, time and parameters.
     """
     candidates = [c for c in derivation.system.components if function in _used(c.values())]
     if len(candidates) > 1 and numeric is not None:
@@ -51,7 +55,7 @@ def _owner(derivation: Derived, function: str, numeric: Numeric | None) -> tuple
 
 
 def _fails(numeric: Numeric, values: tuple[Any, ...]) -> bool:
-    """Whether one of some expressions has no value for the inputs, the time and the parameters."""
+    """Whether any of some expressions has no value for the inputs, the time and the parameters."""
     known = {**numeric.parameters, **numeric.tree.layout.named_inputs, "t": numeric.t}
     for value in values:
         if names_in(value) <= known.keys():
@@ -63,7 +67,7 @@ def _fails(numeric: Numeric, values: tuple[Any, ...]) -> bool:
 
 
 def _used(values: tuple[Any, ...]) -> set[str]:
-    """The functions and operations that some expressions use."""
+    """Names of the functions and operations in some expressions."""
     return {op for value in values for op in _operations(value)}
 
 

@@ -1,10 +1,11 @@
 """Newton's and Euler's equations, body by body.
 
-Each body has the mass the model gives it, and by d'Alembert's principle
+Each body has the mass given in the model. By d'Alembert's principle
 
-    M = Σ Jᵀ I J        h = Σ Jᵀ (I v̇₀ + bias forces - gravity) - what acts
+    M = Σ Jᵀ I J        h = Σ Jᵀ (I v̇₀ + bias forces - gravity) - passive forces
 
-with J the body's velocity by each of v, and v̇₀ its acceleration at v̇ = 0. Nothing is regrouped.
+where J (6 x n) gives the body's velocity for each entry of v, and v̇₀ is its acceleration at v̇ = 0. No
+terms are regrouped: the emitted program lumps masses along the tree, this reference must not share that.
 """
 
 from __future__ import annotations
@@ -24,11 +25,18 @@ if TYPE_CHECKING:
     Array = Any
 
 NOISE = 1e-3
-"""What an entry of mechanics is made of is at least this fraction of its largest neighbour's: rounding."""
+"""Least size of an entry, relative to its largest neighbour of mechanics: below it may be rounding."""
 
 
 class Heavy(NamedTuple):
-    """A body: mass, first moment and inertia about a point, in ground axes, and how that point moves."""
+    """Mass moments of a body about a reference point, in ground axes, and the point's motion.
+
+    Attributes:
+        mass: kg.
+        first: 3, first moment of mass about the point (kg m).
+        inertia: 3 x 3, inertia about the point (kg m^2).
+        moved: motion of the point and of the body's axes.
+    """
 
     mass: float
     first: Array
@@ -38,23 +46,23 @@ class Heavy(NamedTuple):
 
 @dataclass(frozen=True)
 class Bodies:
-    """The bodies of a model at a state.
+    """Newton's and Euler's equations of all bodies at a state.
 
     Attributes:
-        walk: how everything moves there.
+        walk: the motion of all links at that state.
     """
 
     walk: Walk
 
     @cached_property
     def heavy(self) -> list[Heavy]:
-        """Every body that moves."""
+        """All bodies that move, in declared order; bodies welded to ground are left out."""
         moving = {body for body, (link, _) in self.walk.tree.bodies.items() if link >= 0}
         model = self.walk.tree.system
         return [self.heavy_of(body) for body in model.bodies if body in moving]
 
     def heavy_of(self, name: str) -> Heavy:
-        """A body about its mass centre or, where none is given, its origin."""
+        """Return a body's moments about its mass centre or, if the model gives none, about its origin."""
         np, number, resolve = self.walk.np, self.walk.number, self.walk.numeric.resolve
         body = self.walk.tree.system.bodies[name]
         link, pose = self.walk.tree.bodies[name]
@@ -69,31 +77,37 @@ class Bodies:
 
     @cached_property
     def gravity(self) -> Array:
-        """Acceleration of free fall, in ground axes."""
+        """Acceleration of free fall in ground axes (m/s^2), 3."""
         return self.walk.np.array([self.walk.number(x) for x in self.walk.tree.gravity])
 
     @cached_property
     def mass_matrix(self) -> Valued:
-        """M, with what networks store; networks by their laws in numbers."""
+        """M (n x n) of all bodies, plus the inertia that networks add; their laws are evaluated in floats."""
         np, n = self.walk.np, len(self.walk.v)
+        # Sizes are those of the bodies' diagonals: |M_ij| <= sqrt(M_ii M_jj), so an off-diagonal entry may
+        # be the rounding of its diagonals.
         total, diagonal = np.zeros((n, n), self.walk.number), np.zeros(n)
         for body in self.heavy:
             linear, angular = body.moved.linear[:, :-1], body.moved.angular[:, :-1]
             force, torque = self.needed(body, linear, angular)
             total += linear.T @ force + angular.T @ torque
-            # a slender body has none about its axis, but for the rounding of the rest
+            # A slender body has no inertia about its axis except the rounding of its other inertias.
             diagonal += np.linalg.norm(body.inertia) * np.square(np.abs(angular)).sum(axis=0)
             diagonal += abs(body.mass) * np.square(np.abs(linear)).sum(axis=0)
         for i, j, entry in self.walk.numeric.at(self.walk.q, self.walk.v).stored:
             total[i, j] += self.walk.number(entry)
-        # a mass on an axis has none about it, but for the rounding of directions
+        # A mass on an axis has no inertia about it except what the rounding of directions leaves.
         diagonal = np.maximum(diagonal, NOISE**2 * self._aside)
         diagonal = np.sqrt(np.maximum(diagonal, np.abs(np.diag(total))))
         return total, np.maximum(np.abs(total), np.outer(diagonal, diagonal))
 
     @cached_property
     def _aside(self) -> Array:
-        """By velocity, the inertia of all masses if they stood aside of what they turn about."""
+        """For each velocity an upper estimate of inertia: ``Σ m r² |ω|²``.
+
+        r is the distance of the body's reference point from the origin of the link that the velocity moves.
+        The sum is the inertia that the velocity would have if no mass lay on the axis.
+        """
         np, found = self.walk.np, self.walk.np.zeros(len(self.walk.v))
         for body in self.heavy:
             arms = np.square(np.abs(body.moved.origin - self._origins)).sum(axis=1)
@@ -103,7 +117,7 @@ class Bodies:
 
     @cached_property
     def _origins(self) -> Array:
-        """Of each velocity where the link stands that it moves, in ground axes."""
+        """For each velocity, the origin of the link it moves, in ground axes (m), n x 3."""
         found = self.walk.np.zeros((len(self.walk.v), 3), self.walk.number)
         for k, link in enumerate(self.walk.tree.links):
             for freedom in link.velocities:
@@ -111,14 +125,35 @@ class Bodies:
         return found
 
     def needed(self, body: Heavy, linear: Array, angular: Array) -> tuple[Array, Array]:
-        """The force and torque for accelerations of a body at rest, by direction."""
+        """Newton and Euler for a body momentarily at rest: ``f = m u + α x b``, ``n = I α + b x u``.
+
+        With velocities in place of accelerations the same formula gives momentum.
+
+        Args:
+            body: the moments m, b, I about the body's reference point, in ground axes.
+            linear: 3 x k, accelerations u of the reference point (m/s^2).
+            angular: 3 x k, angular accelerations α (rad/s^2).
+
+        Returns:
+            The force (N) and the torque about the reference point (N m), each 3 x k, in ground axes.
+        """
         cross = self.walk.np.cross
         arms = self.walk.np.broadcast_to(body.first[:, None], linear.shape)
         force = body.mass * linear + cross(angular, arms, axis=0)
         return force, body.inertia @ angular + cross(arms, linear, axis=0)
 
     def required(self, body: Heavy, pull: Array) -> tuple[Array, Array]:
-        """The force and torque, about its point, for a body to move as it does at v̇ = 0."""
+        """Wrench that makes a body move as it does at v̇ = 0.
+
+        To the wrench of `needed`, it adds ``ω x (ω x b)`` and ``ω x I ω``.
+
+        Args:
+            body: the moments about the body's reference point, with its motion.
+            pull: 3, acceleration of that point; less gravity where the weight is to be counted (m/s^2).
+
+        Returns:
+            The force (N) and the torque about the reference point (N m), each 3, in ground axes.
+        """
         cross, w = self.walk.np.cross, body.moved.angular[:, -1]
         force, torque = self.needed(body, pull[:, None], body.moved.spin[:, None])
         force = force[:, 0] + cross(w, cross(w, body.first))
@@ -126,7 +161,7 @@ class Bodies:
 
     @cached_property
     def bias(self) -> Valued:
-        """h: what the bodies need at v̇ = 0, less what acts without inputs."""
+        """Bias h (n): generalised force that bodies need at v̇ = 0, less passive forces; ``M v̇ + h = Q``."""
         np, n = self.walk.np, len(self.walk.v)
         total, size = np.zeros(n, self.walk.number), np.zeros(n)
         for body in self.heavy:
@@ -142,13 +177,13 @@ class Bodies:
             self.walk.numeric.applied(self.walk.q, self.walk.v, driven=False)
         )
         size, first = size + parts, self.walk.tree.layout.mechanical
-        # of mechanics alone: what networks store may be of any size beside it
+        # Only among the entries of mechanics: forces on states of networks may be of any other size.
         size[:first] = self._with_noise(size[:first])
         size[first:] += self._loop_noise() + self._of_laws(RESTING)
         return total - acting, size
 
     def _of_laws(self, what: str) -> Array:
-        """How large the terms are that the forces on states of networks are sums of."""
+        """Sizes of the terms that make up the forces on the states of networks."""
         np, number = self.walk.np, self.walk.number
         exchange = self.walk.numeric.exchange(self.walk.q, self.walk.v)
         if exchange is None:
@@ -157,10 +192,10 @@ class Bodies:
         return np.abs([number(exchange.still(x)) for x in rows])
 
     def _loop_noise(self) -> Array:
-        """How large the terms of an algebraic loop are in F of the network's states.
+        """Effect of the tolerance of an algebraic loop's unknowns on the forces F of the network's states.
 
-        The unknowns of a loop are as exact as the terms of its equations, K dx = dr; a small current that is
-        told from the difference of two voltages is less exact than its own digits.
+        The unknowns are as exact as the terms of the loop's equations, ``K dx = dr``. A small current
+        computed from the difference of two voltages is less exact than its own digits.
         """
         np, number = self.walk.np, self.walk.number
         exchange = self.walk.numeric.exchange(self.walk.q, self.walk.v)
@@ -176,10 +211,10 @@ class Bodies:
         return np.abs(slopes.reshape(count, -1)) @ np.abs(np.linalg.inv(K)) @ np.abs(terms)
 
     def _with_noise(self, size: Array) -> Array:
-        """Sizes of forces along v, none much less than its largest neighbour for velocities of unit inertia.
+        """Raise sizes of forces along v so that none is far below its largest neighbour at unit inertia.
 
-        A force in newtons and a torque in newton metres, a planet's and a ship's, have no common size, but
-        |M_ij| <= sqrt(M_ii M_jj): so much of one may be rounding in another.
+        A force in newtons and a torque in newton metres, of a planet and of a ship, have no common size.
+        But ``|M_ij| <= sqrt(M_ii M_jj)``, so that fraction of one may be rounding in the other.
         """
         np = self.walk.np
         inertia = np.maximum(np.diag(self.mass_matrix[1]), self._aside)
@@ -188,7 +223,7 @@ class Bodies:
         return np.maximum(size, NOISE * roots * (size / roots).max(initial=0.0))
 
     def _along(self, acting: Applied | None) -> Valued:
-        """What forces on links and along joints do along v."""
+        """Project wrenches on links and efforts along joints onto v."""
         np, number, n = self.walk.np, self.walk.number, len(self.walk.v)
         total = np.zeros(n, number)
         if acting is None:
@@ -207,7 +242,7 @@ class Bodies:
 
     @cached_property
     def forces(self) -> Valued:
-        """Q of the inputs."""
+        """Q (n): generalised forces of the inputs, joint efforts among them; ``M v̇ + h = Q``."""
         np, numeric = self.walk.np, self.walk.numeric
         driven, size = self._along(numeric.applied(self.walk.q, self.walk.v, driven=True))
         chords = numeric.chords(self.walk.q, self.walk.v)
@@ -220,7 +255,10 @@ class Bodies:
 
     @cached_property
     def energy(self) -> Valued:
-        """Kinetic and potential energy, that of springs included; what networks store."""
+        """Kinetic energy, potential energy with that of springs, and the energy stored in networks (J).
+
+        The last entry is missing in models without networks.
+        """
         np = self.walk.np
         kinetic = moving = potential = size = 0.0
         for body in self.heavy:
@@ -241,7 +279,7 @@ class Bodies:
         return found, np.array([moving, max(size, NOISE * moving), *map(abs, stored)])
 
     def _moving(self, body: Heavy) -> float:
-        """What a body's kinetic energy would be if nothing that moves it went against another."""
+        """Kinetic energy of a body if the velocities that the entries of v give it all had one direction."""
         np, moved = self.walk.np, body.moved
 
         def most(along: Array) -> float:

@@ -1,7 +1,7 @@
-"""Constraints, from the places of their ends.
+"""Constraints, computed from the positions of their two ends.
 
-What has an equation of position is differentiated, once for J and twice for γ; what only velocities obey is
-projected on how the ends move, and differentiated once.
+An equation of position φ(q, t) = 0 is differentiated, once for J and twice for γ. A constraint on
+velocities only is evaluated on the velocities of its ends and differentiated once.
 """
 
 from __future__ import annotations
@@ -26,25 +26,25 @@ if TYPE_CHECKING:
     Array = Any
 
 MISSES = 1e13
-"""What gaps are left at a legal state, times this, count as terms: ends that miss do so everywhere."""
+"""Factor by which gaps left at a legal state enlarge sizes: loops that miss do so everywhere."""
 
 LEGAL = 1e-8
-"""Gaps from here on are those of states that close no loop."""
+"""Gaps of this size or more belong to states that close no loop; they do not enlarge sizes."""
 
 
 @dataclass(frozen=True)
 class Constraints:
-    """The constraints of a model at a state.
+    """The constraints of a model at a state: ``φ(q, t)``, ``J v - b``, and γ in ``J v̇ = γ``.
 
     Attributes:
-        walk: how everything moves there.
+        walk: the motion of all links at that state.
     """
 
     walk: Walk
 
     @cached_property
     def _rows(self) -> dict[str, tuple[ReactionRow, ...]]:
-        """The rows of every chord, as jets along the motion."""
+        """The reaction rows of every chord, as jets along the motion."""
         jets, resolve = Jets(self.walk.numeric.algebra), self.walk.numeric.resolve
         found = {}
         for closure in self.walk.tree.closures:
@@ -63,7 +63,10 @@ class Constraints:
 
     @cached_property
     def position(self) -> Valued:
-        """φ; its entries are judged by how far unit velocities would move one of their ends alone."""
+        """φ (m or rad) of the constraints on position.
+
+        The size of an entry is the displacement that unit velocities would give one of its ends alone.
+        """
         found = [row.position for row in self._holonomic()]
         x, _, _ = self.walk.parts(found)
         return x[:, 0], self.jacobian[1][: len(found)].sum(axis=1)
@@ -75,7 +78,7 @@ class Constraints:
 
     @cached_property
     def _constrained(self) -> tuple[Array, Array, Array]:
-        """J, the rates and γ: φ differentiated once and twice; of velocities what is not to be, once."""
+        """J, rates and γ of all constraints, from derivatives along the motion."""
         np, n = self.walk.np, len(self.walk.v)
         found = [self._derived(k, e) for k, e in enumerate(equations(self.walk.tree))]
         number = self.walk.number
@@ -84,14 +87,15 @@ class Constraints:
         return J, rates, bias
 
     def _derived(self, k: int, equation: ChordEquation) -> tuple[Array, float, float]:
-        """A row of J, its rate and its γ."""
+        """One row of J, its rate ``J v - b`` and its γ."""
         name = equation.component
         if any(relation.name == name for relation in self.walk.tree.relations):
-            # the model gives it as it is
+            # Relations between coordinates are formulas of the model; there are no ends to measure.
             known = self._relations
             return known.jacobian()[k], known.rates()[k], known.bias()[k]
         row = self._rows[name][equation.place]
         if equation.holonomic:
+            # φ̈ = J v̇ + φ̈ at v̇ = 0, and φ̈ must vanish: γ is the latter with opposite sign.
             _, dx, ddx = self.walk.parts([row.position])
             return dx[0, :-1], dx[0, -1], -ddx[0, -1]
         (closure,) = (c for c in self.walk.tree.closures if c.component.name == name)
@@ -102,7 +106,7 @@ class Constraints:
         return self.walk.numeric.chords(self.walk.q, self.walk.v)
 
     def _slipping(self, closure: Closure, row: ReactionRow) -> tuple[Array, float, float]:
-        """A row that only velocities obey: ``f . u + m . w - b`` by direction, and less its derivative."""
+        """A row of a velocity constraint, ``f . u + m . w - b``, and less its time derivative."""
         np = self.walk.np
         tail, head = self._seated(closure.tail), self._seated(closure.head)
         f, df, _ = self.walk.parts(row.force)
@@ -110,6 +114,8 @@ class Constraints:
         b, db, _ = self.walk.parts([row.rate])
         line = head.origin - tail.origin
         arms = np.broadcast_to(line[:, None], tail.angular.shape)
+        # Velocity of the head relative to the tail's axes, which turn: the last term is the velocity of the
+        # point fixed in the tail that is at the head's place.
         u = head.linear - tail.linear - np.cross(tail.angular, arms, axis=0)
         w = head.angular - tail.angular
         along = f[:, 0] @ u + m[:, 0] @ w
@@ -125,9 +131,10 @@ class Constraints:
 
     @cached_property
     def jacobian(self) -> Valued:
-        """J; a row is judged by what its ends would move it without each other: directions and lever arms.
+        """J (c x n), ``J v̇ = γ``, and the size of each row: its largest entry for either end moving alone.
 
-        Where a hinge stands beside another one these cancel, and what is left is rounding.
+        Where one hinge is placed next to another the contributions of the two ends cancel, and only
+        rounding is left.
         """
         np, (J, _, _) = self.walk.np, self._constrained
         largest = np.abs(J).max(axis=1, initial=0.0)
@@ -138,19 +145,19 @@ class Constraints:
 
     @cached_property
     def doubt(self) -> float:
-        """By how much more than by rounding the ends of loops differ about directions, where they miss."""
+        """Factor >= 1 on sizes of reactions where the ends of loops miss each other."""
         apart = [self._apart(equation) for equation in equations(self.walk.tree)]
         return 1 + MISSES * self._gap(self.walk.np.array(apart).reshape(-1))
 
     def _gap(self, size: Array) -> float:
-        """The largest gap of a legal state, a pure number."""
+        """The largest gap of a legal state relative to its size; 0 at states that close no loop."""
         x, _, _ = self.walk.parts([row.position for row in self._holonomic()])
         np, known = self.walk.np, size[: len(x)]
         gap = np.max(np.abs(x[:, 0]) / np.where(known > 0, known, np.inf), initial=0.0)
         return float(gap) if gap < LEGAL else 0.0
 
     def _apart(self, equation: ChordEquation) -> float:
-        """How far unit velocities would move a row if its ends did not move together."""
+        """How fast unit velocities would move a row if each of its ends moved alone."""
         np = self.walk.np
         closure = next(
             (c for c in self.walk.tree.closures if c.component.name == equation.component), None
@@ -175,14 +182,14 @@ class Constraints:
 
     @property
     def rates(self) -> Valued:
-        """J v - b; judged by J for any v as fast."""
+        """``J v - b`` (m/s or rad/s); its size is that of J for velocities as fast as the fastest."""
         np, (_, rates, _) = self.walk.np, self._constrained
         fastest = np.abs(self.walk.v).max(initial=0.0)
         return rates, self.jacobian[1].sum(axis=1) * fastest + np.abs(rates)
 
     @property
     def bias(self) -> Valued:
-        """γ; at speeds v it is of the size of J v², of which much may cancel."""
+        """γ in ``J v̇ = γ`` (m/s^2 or rad/s^2); of the size of J v², of which much may cancel."""
         np, (_, _, bias) = self.walk.np, self._constrained
         fastest = np.abs(self.walk.v).max(initial=0.0)
         return bias, self.jacobian[1].sum(axis=1) * fastest * fastest + np.abs(bias)

@@ -1,12 +1,13 @@
-"""What acts in every joint, from accelerations and multipliers: joints cut, equations of bodies written.
+"""Forces and torques in all joints, for given accelerations and multipliers: cut the joint, sum over bodies.
 
 A cut through a branch frees all bodies beyond it. By Newton and Euler the joint exerts on them
 
-    Σ (what their motion needs, weight taken off) - Σ (what elements, loads and chords exert on them)
+    Σ (wrench for their motion, less weight) - Σ (wrenches of elements, loads and chords on them)
 
-A chord exerts its multipliers along its reaction directions, which are the derivatives of its equations by
-the place of its head: virtual work. Bodies have their own masses, accelerations are derivatives of places
-(`walk`). Shared with the emitted program are the laws of elements, and along what a joint's effort acts.
+A chord exerts its multipliers along its reaction directions. These are the derivatives of its equations
+with respect to the position of its head, by virtual work. Bodies have their own masses; accelerations are
+derivatives of positions (`walk`). Only the laws of elements and the directions of joint efforts are shared
+with the emitted program.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from __future__ import annotations
 from collections import ChainMap
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from linegraph.algebra.jets import Jet, Jets, lifted
 from linegraph.components.constraints.base import Constraint, Instant, Pose, Prescribed
@@ -27,6 +28,7 @@ from linegraph.dynamics.law_names import scope
 from linegraph.dynamics.reaction_rows import rows_of
 from linegraph.errors import ModelError
 from linegraph.model.terminal_graphs import terminals_of
+from linegraph.verification.golden.pulls import GroundPlace, Pull
 
 if TYPE_CHECKING:
     from linegraph.kinematics.links import Closure, Seat
@@ -34,93 +36,27 @@ if TYPE_CHECKING:
     from linegraph.numeric.derived import Derived
     from linegraph.verification.golden.bodies import Bodies
     from linegraph.verification.golden.kinematics import KinematicReference
+    from linegraph.verification.golden.pulls import Sized
     from linegraph.verification.golden.walk import Moved, Valued, Walk
 
     Array = Any
 
 
-Sized = tuple[float, float]
-"""A number, and how large what it is made of is."""
-
 ASIDE = 1e-3
-"""A step for slopes of laws, of which only the size matters."""
-
-
-class Pull(NamedTuple):
-    """A force and a torque about a point, in ground axes, and how large what they are made of is.
-
-    Attributes:
-        force, torque: N and N m.
-        point: what the torque is about (m).
-        of_force, of_torque: the sums of the lengths of their parts.
-    """
-
-    force: Array
-    torque: Array
-    point: Array
-    of_force: float
-    of_torque: float
-
-    def about(self, point: Array) -> Pull:
-        """The same about another point."""
-        import numpy as np
-
-        arm = self.point - point
-        torque = self.torque + np.cross(arm, self.force)
-        reach = float(np.linalg.norm(arm))
-        return Pull(
-            self.force, torque, point, self.of_force, self.of_torque + reach * self.of_force
-        )
-
-    def with_(self, other: Pull) -> Pull:
-        """The sum, about the point of the first."""
-        other = other.about(self.point)
-        return Pull(
-            self.force + other.force,
-            self.torque + other.torque,
-            self.point,
-            self.of_force + other.of_force,
-            self.of_torque + other.of_torque,
-        )
-
-    def turned(self) -> Pull:
-        """The reaction."""
-        return self._replace(force=-self.force, torque=-self.torque)
-
-
-class GroundPlace(NamedTuple):
-    """A point and its axes in motion, in ground axes, accelerations at the v̇ given.
-
-    Attributes:
-        rotation, origin: as of `walk.Moved`.
-        linear, angular, pull, spin: velocities and accelerations of its origin and of its axes.
-        of_linear, of_angular: how large what the velocities are made of is.
-        of_pull, of_spin: the same of the accelerations.
-    """
-
-    rotation: Array
-    origin: Array
-    linear: Array
-    angular: Array
-    pull: Array
-    spin: Array
-    of_linear: float
-    of_angular: float
-    of_pull: float
-    of_spin: float
+"""Relative step for slopes of laws; only their size matters."""
 
 
 @dataclass(frozen=True)
 class Cuts:
-    """All edges of a model at a state, for given accelerations and multipliers.
+    """Wrenches in all edges of a model at a state, for given accelerations and multipliers.
 
     Attributes:
         derivation: the model, and which edges are branches.
-        walk: how everything moves there.
-        bodies: what that takes.
-        kinematics: places on bodies.
-        a: the accelerations, and how large what they are made of is.
-        lam: the same of the multipliers.
+        walk: the motion of all links.
+        bodies: Newton's and Euler's equations of all bodies.
+        kinematics: motion of frames.
+        a: v̇ (n) and its sizes.
+        lam: multipliers λ (c) and their sizes; ``M v̇ + h = Q + Jᵀ λ``.
     """
 
     derivation: Derived
@@ -132,24 +68,25 @@ class Cuts:
 
     @property
     def model(self) -> System:
-        """What was said."""
+        """The system that was derived."""
         return self.derivation.system
 
     @cached_property
     def acting(self) -> ForceLaws:
-        """The laws of elements, loads and networks, in numbers."""
+        """The laws of elements, loads and networks, evaluated in floats."""
         chords = self.walk.numeric.chords(self.walk.q, self.walk.v)
         return ForceLaws(chords, [float(x) for x in self.a[0]])
 
     # -- places
 
     def place(self, terminal: str) -> GroundPlace:
-        """How a terminal, or a mass centre, moves."""
+        """Motion of a terminal or mass centre in ground axes, named as ``body`` or ``body.frame``."""
         np, (a, of_a), v = self.walk.np, self.a, absolute(self.walk.v)
         at = self.kinematics.frame(terminal)
         linear, angular = at.linear[:, :-1], at.angular[:, :-1]
         u, w = (np.linalg.norm(x, axis=0) for x in (linear, angular))
-        # a point of an axis is still for its two distances from somewhere cancel
+        # A point on an axis is at rest because two lever arms cancel, so its size includes the whole
+        # distance.
         fast, far = float(w @ v), float(np.linalg.norm(at.origin))
         turning = float(np.linalg.norm(at.spin) + w @ (np.abs(a) + of_a))
         return GroundPlace(
@@ -168,12 +105,17 @@ class Cuts:
     # -- bodies
 
     def needed(self, body: str) -> Pull:
-        """What a body's motion needs, its weight taken off, about its own point."""
+        """Wrench for a body's motion less its weight, in ground axes.
+
+        The torque is about the body's own reference point.
+        """
         np, (a, of_a) = self.walk.np, self.a
         heavy = self.bodies.heavy_of(body)
         moved = heavy.moved
         linear, angular = moved.linear[:, :-1], moved.angular[:, :-1]
         gravity = self.bodies.gravity
+        # Weight acts at the mass centre like an acceleration -g of the whole body, so it needs no wrench of
+        # its own.
         pull = moved.pull + linear @ a - gravity
         heavy = heavy._replace(moved=moved._replace(spin=moved.spin + angular @ a))
         force, torque = self.bodies.required(heavy, pull)
@@ -189,7 +131,7 @@ class Cuts:
 
     @cached_property
     def elements(self) -> dict[str, Pull]:
-        """What every element and load exerts on its head, about the head's origin."""
+        """Wrench of every element and load on its head, about the head's origin, in ground axes, by name."""
         return {element.name: self._element(element) for element in self.model.elements}
 
     def _element(self, element: Element | Load) -> Pull:
@@ -203,6 +145,8 @@ class Cuts:
             length = float(np.linalg.norm(line))
             pull = _array(np, self.acting.between(element)[1])
             y = float(pull @ line) / length
+            # A positive through variable pulls the two points together, so it pulls the head towards the
+            # tail.
             found = self._pull(-y * line / length, np.zeros(3), element.between[1])
             apart = float(np.linalg.norm(head.origin) + np.linalg.norm(tail.origin))
             rate = float((head.linear - tail.linear) @ line) / length
@@ -217,7 +161,7 @@ class Cuts:
         return self._pull(force, torque, closure.component.between[1])
 
     def _carried(self, element: Element, x: Sized, v: Sized) -> float:
-        """What a law makes of how large its length and its rate are, which may cancel."""
+        """Size of a law's value that results from the sizes of its length and rate, which may cancel."""
         if isinstance(element, NetworkForce):
             return 0.0
         numeric = self.walk.numeric
@@ -234,6 +178,7 @@ class Cuts:
 
         try:
             here = y(x[0], v[0])
+            # Coarse differences are enough: only the size of the slopes matters.
             apart = abs(y(x[0] + ASIDE * x[1], v[0]) - here) + abs(
                 y(x[0], v[0] + ASIDE * v[1]) - here
             )
@@ -247,7 +192,10 @@ class Cuts:
         return Pull(force, torque, self.place(terminal).origin, *sizes)
 
     def _chord(self, closure: Closure) -> Pull:
-        """Multipliers along reaction directions, and efforts; elements that sit in it left out."""
+        """Wrench of a chord on its head: multipliers along reaction directions, and joint efforts.
+
+        Elements that act in the joint are left out.
+        """
         np, (lam, of_lam) = self.walk.np, self.lam
         component: Any = closure.component
         total = self._pull(np.zeros(3), np.zeros(3), component.between[1])
@@ -268,10 +216,10 @@ class Cuts:
         return total
 
     def _directions(self, closure: Closure) -> list[Array]:
-        """Of each row of a chord the force and torque on its head that do work on nothing it allows.
+        """For each row of a chord the force and torque on its head that do no work on any motion it allows.
 
-        They are the row's derivatives as its head moves along and turns about the axes of ground; of what
-        only velocities obey they are the row itself.
+        They are the derivatives of the row as its head moves along and turns about the axes of ground. A
+        row that constrains velocities only is its own direction.
         """
         np = self.walk.np
         jets, resolve = Jets(self.walk.numeric.algebra), self.walk.numeric.resolve
@@ -302,14 +250,17 @@ class Cuts:
         return found
 
     def seat(self, seat: Seat) -> Moved:
-        """How a seat of a link moves."""
+        """Motion of a seat, a point with axes fixed in a link."""
         return self.walk.moved(seat.link, seat.at, seat.rotation)
 
     # -- joints
 
     @cached_property
     def joints(self) -> dict[str, Pull]:
-        """What every joint and constraint exerts on its head, about the head's origin; elements not."""
+        """Wrench of every joint and constraint on its head, about the head's origin, in ground axes, by name.
+
+        Elements that act in a joint are not part of its wrench; they have their own edges.
+        """
         terminals = terminals_of(self.model)
         chords = {
             closure.component.name: self._chord(closure)
@@ -343,18 +294,19 @@ class Cuts:
             found[name] = total if forward else total.turned()
             for element in self.model.elements:
                 if isinstance(element, Element) and element.joint == name:
+                    # The cut also carries the element in the joint, which has its own edge.
                     found[name] = found[name].with_(self.elements[element.name].turned())
         return {name: found[name] for name in self.walk.tree.ends}
 
     def _apart(self, give: Any, joint: str, pull: Pull) -> None:
-        """Let what acts in a joint or constraint act on both of its ends."""
+        """Apply a wrench in a joint or constraint to its head, and the reaction to its tail."""
         tail, head = self.walk.tree.ends[joint].component.between
         give(head, pull)
         give(tail, pull.turned())
 
     @cached_property
     def _branches(self) -> dict[str, tuple[list[str], bool]]:
-        """Of every joint that is a branch the bodies beyond it, and whether its head is among them."""
+        """For every joint that is a branch, the bodies beyond it and whether its head is among them."""
         joints = {joint.name: joint for joint in self.model.joints}
         terminals = terminals_of(self.model)
         walk = self.derivation.topology.walk
@@ -381,7 +333,7 @@ class Cuts:
 
 
 def absolute(x: Any) -> Any:
-    """Absolute values as an array."""
+    """Return the absolute values of a sequence of numbers as an array."""
     import numpy
 
     return numpy.abs(numpy.array(x, float))

@@ -1,12 +1,12 @@
-"""Derivatives of the equations of motion: Newton's and Euler's, calculated a little beside the state.
+"""Derivatives of the equations of motion, each column by one complex step (`steps`).
 
-Every column is one complex step (`steps`): along q̇ = N d for changes of position d, along v, u or a
-parameter. With r = M a + h - Q, which is zero,
+Steps go along q̇ = N d for changes of position d, and along v, u or a parameter. The residual is zero:
 
-    ∂a/∂x = -M⁻¹ ∂r/∂x
+    r = M v̇ + h - Q = 0        ∂v̇/∂x = -M⁻¹ ∂r/∂x
 
-and with constraints v̇ itself is solved for in the independent coordinates, all of it beside the state. What
-a change of position becomes while the state moves is the bracket of the two motions.
+With constraints, v̇ is solved for in the independent coordinates, entirely at the shifted state. A change
+of position d is transported by the motion itself: d' = dv + [bracket] d, with the Lie bracket of the two
+motions.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ if TYPE_CHECKING:
 
 
 IDLE = 1e-2
-"""What a variable without effect takes part in is at least this fraction of what others of its kind do."""
+"""Lower bound on a derivative's size, relative to those by other variables of its kind."""
 
 
 class _Slopes(NamedTuple):
-    """The derivatives of M (n x n x k), h and Q (n x k) by k variables.
+    """Derivatives of M (n x n x k), h and Q (n x k) with respect to k variables.
 
-    `terms` is how large what those of h and Q are made of is: what a diode does by itself, and what it does
-    as its voltage follows, may cancel.
+    `terms` are the sizes of the terms of ∂h - ∂Q. A diode's own slope and its slope through the voltage
+    that follows may cancel.
     """
 
     mass: Array
@@ -49,10 +49,13 @@ class _Slopes(NamedTuple):
 
 @dataclass(frozen=True)
 class Derivatives:
-    """What a model does beside a state.
+    """Derivatives of the equations of motion at a state.
+
+    Each result is an array and the size of its entries. Changes of position are expressed in velocities, on
+    the tangent space: δq = N d.
 
     Attributes:
-        point: the state, and what is known there.
+        point: the state and the reference quantities at it.
     """
 
     point: Point
@@ -61,12 +64,12 @@ class Derivatives:
 
     @property
     def _motions(self) -> Array:
-        """N: how q moves for unit changes of position."""
+        """N (nq x n): change of q for unit changes of position."""
         return self.point.walk.rates_by_direction[:, : self._count]
 
     @property
     def _count(self) -> int:
-        """How many changes of position there are: one for each velocity of mechanics."""
+        """Number of changes of position: one for each velocity of mechanics."""
         return int(self.point.walk.tree.layout.mechanical)
 
     def _beside(
@@ -78,7 +81,15 @@ class Derivatives:
         *,
         held: bool = False,
     ) -> Walk:
-        """How everything moves a little further along a direction; unknowns of loops follow, or are held."""
+        """The motion at a state shifted by i h along a direction.
+
+        Args:
+            dq: nq, direction in q; empty for none.
+            dv: n, direction in v; empty for none.
+            du: nu, direction in u; empty for none.
+            parameters: complex values in place of the state's own.
+            held: whether unknowns of algebraic loops keep their values instead of following.
+        """
         point = self.point
         q, v = _moved(point.q, dq), _moved(point.v, dv)
         u = _moved(point.u, du) if len(du) else None
@@ -94,7 +105,13 @@ class Derivatives:
     def _slopes(
         self, steps: Sequence[Mapping[str, Any]], *, mass: bool = True, bias: bool = True
     ) -> _Slopes:
-        """All by as many variables as there are steps; M and h may be known not to depend on them."""
+        """Derivatives along each of some steps.
+
+        Args:
+            steps: keyword arguments of `_beside`, one entry for each variable.
+            mass: False where M is known not to depend on the variables.
+            bias: False where h is known not to depend on them.
+        """
         np, n, k = self.point.walk.np, len(self.point.v), len(steps)
         found = _Slopes(np.zeros((n, n, k)), *(np.zeros((n, k)) for _ in range(3)))
         for i, step in enumerate(steps):
@@ -118,14 +135,14 @@ class Derivatives:
     @cached_property
     def _by_velocities(self) -> _Slopes:
         units = self.point.walk.np.eye(len(self.point.v))
-        # only what networks store depends on velocities
+        # M depends on velocities only through the stores of networks, whose states are among v.
         mass = self.point.walk.tree.network is not None
         return self._slopes([{"dv": dv} for dv in units], mass=mass)
 
     @cached_property
     def _by_inputs(self) -> _Slopes:
         units = self.point.walk.np.eye(len(self.point.u))
-        # what may be prescribed by inputs, in motions or laws, M and h depend on; not on mere efforts
+        # M and h depend on inputs that prescribe motions or enter laws, and not on efforts.
         tree = self.point.walk.tree
         driven = any(link.place.drive for link in tree.links) or any(c.drive for c in tree.closures)
         moving = driven or bool(tree.layout.named_inputs)
@@ -141,29 +158,29 @@ class Derivatives:
     # -- of tau
 
     def _of_tau(self, by: _Slopes, unit: Any = 1.0) -> Valued:
-        """∂(M a + h), for any a."""
+        """∂(M a + h)/∂x for any a."""
         np = self.point.walk.np
         found = np.einsum("ijk,j->ik", by.mass, self.point.a) + by.bias
         return found, np.maximum(self._sizes(found, self.point.inverse[1], unit), by.terms)
 
     @property
     def tau_by_changes(self) -> Valued:
-        """∂τ/∂q along the velocities."""
+        """∂τ/∂q on the tangent space, n x n: the derivative of τ = M a + h along δq = N d."""
         return self._of_tau(self._by_changes)
 
     @property
     def tau_by_velocities(self) -> Valued:
-        """∂τ/∂v."""
+        """∂τ/∂v, n x n, of τ = M a + h."""
         return self._of_tau(self._by_velocities, self._velocity_units)
 
     @property
     def tau_by_parameters(self) -> Valued:
-        """∂τ/∂p."""
+        """∂τ/∂p, n x np, of τ = M a + h."""
         return self._of_tau(self._by_parameters, self._parameter_units)
 
     @cached_property
     def _velocity_units(self) -> Array:
-        """For each velocity what its derivatives are counted in: by a unit, or by the most it may be."""
+        """For each velocity, the reciprocal of its largest allowed value, at most 1."""
         point = self.point
         bounds = point.derivation.system.bounds.velocities
         names = [x.name for x in point.walk.tree.velocities]
@@ -172,18 +189,19 @@ class Derivatives:
 
     @cached_property
     def _parameter_units(self) -> Array:
-        """For each parameter what its derivatives are counted in: those by its relative change."""
+        """For each parameter, the reciprocal of its value: derivatives are judged by relative changes."""
         np, model = self.point.walk.np, self.point.derivation.system
         values = self.point.walk.numeric.parameters
         own = [abs(float(values[p.name])) for p in model.parameters.values() if not p.derived]
         return np.array([1 / x if x else 0.0 for x in own])
 
     def _sizes(self, found: Array, sizes: Array, unit: Any = 1.0) -> Array:
-        """What entries are made of: of each variable what it does most, each row in its own measure.
+        """Sizes of derivatives: for each variable its largest effect, each row in its own measure.
 
-        What does nothing may be what is left of much that does: at least a fraction of what mechanics
-        does most, and of what a unit does, for states and shifts are of its size. Parameters are not, and
-        inputs stand beside forces of any size: there the unit is that of each, or nothing.
+        A zero derivative may be the remainder of large terms that cancel. Its size is therefore at least a
+        fraction of the largest effect of mechanics, and of the effect of one unit, because states and
+        shifts are of that size. Parameters are not, and inputs act beside forces of any size; there `unit`
+        is given for each, or 0.
         """
         np = self.point.walk.np
         measure = np.where(sizes > 0, sizes, np.inf)[:, None]
@@ -195,10 +213,11 @@ class Derivatives:
     # -- of v̇
 
     def _of_motion(self, by: _Slopes, unit: Any = 1.0) -> Valued:
-        """∂v̇ = -M⁻¹ ∂r at the v̇ of the state."""
+        """∂v̇/∂x = -M⁻¹ ∂r/∂x at the v̇ of the state."""
         np, (M, of_M) = self.point.walk.np, self.point.bodies.mass_matrix
         a, of_a = self.point.motion[0]
         scale = self.point.scale(of_M, of_M[:0])[0]
+        # Scaled to unit inertia, so that units and masses of very different size do not spoil the inverse.
         inverse = np.linalg.inv(M * scale * scale[:, None]) * scale * scale[:, None]
         slopes = np.einsum("ijk,j->ik", by.mass, a) + by.bias - by.forces
         found = -inverse @ slopes
@@ -209,31 +228,31 @@ class Derivatives:
 
     @cached_property
     def motion_by_changes(self) -> Valued:
-        """∂v̇/∂q along the velocities."""
+        """∂v̇/∂q on the tangent space, n x n: the derivative of v̇ along δq = N d."""
         return self._of_motion(self._by_changes)
 
     @cached_property
     def motion_by_velocities(self) -> Valued:
-        """∂v̇/∂v."""
+        """∂v̇/∂v, n x n, without constraints."""
         return self._of_motion(self._by_velocities, self._velocity_units)
 
     @cached_property
     def motion_by_inputs(self) -> Valued:
-        """∂v̇/∂u."""
+        """∂v̇/∂u, n x nu, without constraints."""
         return self._of_motion(self._by_inputs, 0.0)
 
     @cached_property
     def motion_by_parameters(self) -> Valued:
-        """∂v̇/∂p."""
+        """∂v̇/∂p, n x np, without constraints."""
         return self._of_motion(self._by_parameters, self._parameter_units)
 
     # -- of the state
 
     @cached_property
     def _bracket(self) -> Array:
-        """What d does to its own rate: ``d' = dv + [bracket] d``.
+        """The bracket in ``d' = dv + [bracket] d``.
 
-        With δq = N d both N d' + Ṅ d and ∂(N v) δq + N dv are its rate.
+        It follows from δq = N d, whose rate is both ``N d' + Ṅ d`` and ``∂(N v) δq + N dv``.
         """
         np, point = self.point.walk.np, self.point
         motions, algebra, tree = self._motions, Complexes(), point.walk.tree
@@ -249,11 +268,15 @@ class Derivatives:
             for motion, unit in zip(motions.T, units, strict=True)
         ]
         gaps = np.array(columns).reshape(self._count, len(point.q)).T
+        # N has full column rank, and the gaps keep quaternions normalised, so they lie in its range.
         return np.linalg.pinv(motions) @ gaps
 
     @cached_property
     def state_by_state(self) -> Valued:
-        """A."""
+        """A of ``δx' = A δx + B δu`` with δx = (changes of position, δv).
+
+        With constraints δx are the independent changes and rates only.
+        """
         np = self.point.walk.np
         if self.point.walk.tree.closed:
             return self._on_constraints
@@ -261,14 +284,14 @@ class Derivatives:
         above = np.hstack([self._bracket, np.eye(count, n)])
         (by_q, of_q), (by_v, of_v) = self.motion_by_changes, self.motion_by_velocities
         found = np.vstack([above, np.hstack([by_q, by_v])])
-        # each entry of the bracket is a velocity, or what is left of several
+        # Each entry of the bracket is a velocity or the remainder of several that cancel.
         fastest = np.abs(self.point.v[:count]).max(initial=0.0)
         of_above = np.maximum(np.abs(above), fastest)
         return found, np.vstack([of_above, np.hstack([of_q, of_v])])
 
     @cached_property
     def state_by_inputs(self) -> Valued:
-        """B."""
+        """B of ``δx' = A δx + B δu``; zero in the rows of position."""
         np = self.point.walk.np
         if self.point.walk.tree.closed:
             return self._by_inputs_on_constraints
@@ -279,24 +302,24 @@ class Derivatives:
 
     @cached_property
     def _others(self) -> list[int]:
-        """The velocities that the constraints determine."""
+        """Indices of the velocities that the constraints determine."""
         kept = self.point.kept.velocities
         return [k for k in range(len(self.point.v)) if k not in kept]
 
     @cached_property
     def _basis(self) -> Array:
-        """As many combinations of constraints as determine these; a constraint said twice counts once."""
+        """Independent combinations of the constraints; redundant ones count once."""
         rows = self.point.closed.jacobian[0][:, self._others]
         return self.point.walk.np.linalg.svd(rows, full_matrices=False)[0].T
 
     def _determined(self, J: Array, right: Array) -> Array:
-        """What the constraints make of a right-hand side: ``J_others x = right``."""
+        """Solve ``J_others x = right`` for the dependent velocities."""
         return self.point.walk.np.linalg.solve(
             self._basis @ J[:, self._others], self._basis @ right
         )
 
     def _motion(self, walk: Walk) -> tuple[Array, Array]:
-        """V and ẇ at a state beside this one, whose velocities are brought onto the constraints from w."""
+        """V and ẇ at a shifted state, whose velocities are first completed from w by the constraints."""
         np, kept = walk.np, list(self.point.kept.velocities)
         start = Constraints(walk)
         J, rates = start.jacobian[0], start.rates[0]
@@ -315,7 +338,7 @@ class Derivatives:
     def _of_independent(
         self, steps: Sequence[Mapping[str, Any]], unit: Any = 1.0
     ) -> tuple[Array, Valued]:
-        """The derivatives of v and of ẇ."""
+        """Derivatives of v and of ẇ."""
         np, kept = self.point.walk.np, list(self.point.kept.velocities)
         columns = [self._motion(self._beside(**step)) for step in steps]
         moved = np.array([v for v, _ in columns]).reshape(len(steps), len(self.point.v)).T
@@ -329,7 +352,7 @@ class Derivatives:
 
     @cached_property
     def _positions(self) -> Array:
-        """All changes of position for unit changes of those that are free, by the equations of position."""
+        """Changes of all positions for unit changes of the free ones, from the constraints on position."""
         np, free = self.point.walk.np, list(self.point.kept.changes)
         count = sum(e.holonomic for e in equations(self.point.walk.tree))
         rows = np.vstack([self.point.closed.jacobian[0][:count], np.eye(len(self.point.v))[free]])
@@ -338,7 +361,7 @@ class Derivatives:
 
     @cached_property
     def _on_constraints(self) -> Valued:
-        """A of changes that keep the constraints: of position, and w by itself."""
+        """A for changes that obey the constraints: of the free positions, and of w alone."""
         np, T, D = self.point.walk.np, self.point.reduction[0][0], self._positions
         free = list(self.point.kept.changes)
         along = self._motions @ D[: self._count]
@@ -346,7 +369,7 @@ class Derivatives:
         moved, (below, of_below) = self._of_independent(steps)
         moved[: self._count, : len(free)] += self._bracket @ D[: self._count]
         above = moved[free]
-        # what is zero is left of velocities, and of their parts along unit changes
+        # Zeros are remainders of velocities, and of their components along unit changes.
         fastest = max(1.0, np.abs(self.point.v[: self._count]).max(initial=0.0))
         of_above = np.maximum(np.abs(above), fastest)
         return np.vstack([above, below]), np.vstack([of_above, of_below])
@@ -356,7 +379,7 @@ class Derivatives:
         np = self.point.walk.np
         units = np.eye(len(self.point.u))
         _, (below, of_below) = self._of_independent([{"du": du} for du in units], 0.0)
-        # what a force along a velocity that is locked does is left of what locks it
+        # A force along a locked velocity has the effect that the rounding of the locking constraint leaves.
         of_T, inertia = self.point.reduction[0][1], self.point.reduced[0][0]
         parts = np.abs(np.linalg.inv(inertia)) @ of_T.T @ np.abs(self._by_inputs.forces)
         of_below = np.maximum(of_below, parts)
@@ -365,7 +388,7 @@ class Derivatives:
 
 
 def _moved(x: Sequence[float], along: Sequence[float]) -> list[Any]:
-    """A step of some numbers along a direction; none where there is no direction."""
+    """Shift numbers by i h along a direction; unshifted complex numbers where the direction is empty."""
     if not len(along):
         return [complex(a) for a in x]
     return [complex(a, STEP * b) for a, b in zip(x, along, strict=True)]

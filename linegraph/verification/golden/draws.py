@@ -1,8 +1,8 @@
-"""States at which a model is looked at: drawn at random, legal, and within the bounds that the user gives.
+"""Random states at which a model is compared: admissible, regular, and within the user's bounds.
 
-Quaternions have length 1, loops are closed and velocities allowed, every law is defined, and nothing is
-nearly singular. At every second state the parameters differ from the model's own values: two parameters of
-one value could not be told apart otherwise.
+Quaternions have length 1, loops are closed and velocities obey the constraints, every law is defined, and M
+is not nearly singular. At every second state the parameters differ from the model's own values; otherwise
+two parameters of equal value could be exchanged unnoticed.
 """
 
 from __future__ import annotations
@@ -30,60 +30,64 @@ if TYPE_CHECKING:
     from linegraph.verification.golden.walk import Valued
 
 STATES = 10
-"""How many states a model is asked at, that at rest included."""
+"""Number of states, the one at rest included."""
 
 TRIES = 40
-"""How many states are drawn for one that is defined."""
+"""Number of draws for one state before giving up."""
 
 DIGITS = 14
-"""Digits of what is written: the tolerance is far above them."""
+"""Significant digits written to files: rounding to these is far below the tolerance."""
 
 REACHES = (1.0, 0.3, 0.1, 0.03)
-"""How far states of networks and inputs are from zero; the first that will do."""
+"""Largest states of networks and inputs, tried in this order until all states are usable."""
 
 REGULAR = 1e4
-"""Accelerations may be this much smaller than what they are made of; beyond, M is nearly singular."""
+"""Largest ratio of the terms of accelerations to accelerations; beyond it M counts as nearly singular."""
 
 SOLVED = ("a", "A", "B", "da_dq", "da_dv", "da_du", "da_dp", "Lambda", "R", "D", "P", "y")
-"""Results for which M is solved with."""
+"""Results that are solved for with M."""
 
 APART = (0.8, 1.25)
-"""Parameters that are drawn are within these multiples of the model's own values."""
+"""Range of factors on the model's own values from which parameters are drawn."""
 
 SLOW, SLOW_AT = 1e-3, 4
-"""Velocities at one of the states are so small that dry friction has not yet risen; which state that is."""
+"""Factor on velocities at one state, so small that dry friction has not saturated; that state's index."""
 
 RATES = ("m/s", "rad/s")
-"""The units of velocities among the states of networks."""
+"""Units of those states of networks that are velocities."""
 
 GAP = 1e-9
-"""What constraints may miss, at most, in lengths and angles of size 1."""
+"""Largest error of a constraint at an admissible state, for lengths and angles of size 1."""
 
 LITTLE = 0.1
-"""What a parameter that is zero becomes, as a part of the least of its unit: inertias stay possible."""
+"""Value for a parameter that is zero, relative to the least of its unit: small, so that inertias stay
+possible.
+"""
 
 LOCKED = 1e-13
-"""Velocities of this part of the largest, or of 1, are what is left of those that constraints lock."""
+"""Velocities below this fraction of the largest, or of 1, are rounding of velocities that constraints lock.
+"""
 
 BESIDE = 0.02
-"""How far guesses are from positions: so little that they lead to these, and to no other way to assemble."""
+"""Distance of guesses from positions, small enough that Newton's iteration returns to these positions."""
 
 SINGULAR = "no state was found at which all laws are defined and M is regular"
 
 Asked = dict[str, "Callable[[Point], Valued]"]
-"""The results of a function, and what gives them."""
+"""Results of a function by name, and how to compute each at a point."""
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """How states of a model are drawn.
+    """A source of random states of a model.
 
     Attributes:
         derivation: the model.
-        draw: where randomness comes from.
-        kept: what is independent under constraints.
-        chosen: for each function that is to be defined at the states, its results.
-        varied: whether those with a value may be: the functions take them as an argument.
+        draw: the random number generator.
+        kept: indices of the independent variables under constraints.
+        chosen: for each function that must be defined at the states, its results.
+        varied: whether parameters with a value may be varied: True if the functions take them as an
+            argument.
     """
 
     derivation: Derived
@@ -93,14 +97,18 @@ class Drawing:
     varied: bool = True
 
     def points(self, count: int = STATES) -> list[Point]:
-        """All states; those of networks so near zero that no exponential law dwarfs one state by another.
+        """Draw all states, those of networks so near zero that no exponential law dominates.
 
-        Where these had to be nearer zero than 1 there are more than `count`: one loud state from each reach
-        that was too far, at which diodes conduct.
+        Args:
+            count: how many states.
+
+        Returns:
+            The states. Where states had to be nearer zero than 1, further ones are appended: one loud state
+            for each reach that was too far, so that diodes conduct at some states.
 
         Raises:
             ModelError: a law is defined at no state that was tried, M is singular at all of them, or the
-                bounds name what does not exist.
+                bounds name a quantity that does not exist.
         """
         self._require_known()
         network = self.derivation.formulation.network
@@ -124,7 +132,7 @@ class Drawing:
         return self._quietest(count) + loud[:-1]
 
     def _calm(self) -> Any:
-        """What acts in networks at states very near zero, a row each; no row where laws are not defined."""
+        """Forces in networks very near zero, one row for each state; empty where laws are undefined."""
         beside = replace(self, draw=random.Random(0), chosen=[{}], varied=False)
         try:
             return acting([beside._point(REACHES[-1], k) for k in range(1, CALM + 1)])
@@ -132,12 +140,12 @@ class Drawing:
             return []
 
     def _quietest(self, count: int) -> list[Point]:
-        """Of states very near zero the least loud: sources are loud at some times, whatever the state."""
+        """The least loud of several states very near zero; sources are loud at some times anyway."""
         found = [[self._point(REACHES[-1], k) for _ in range(CALM)] for k in range(count)]
         return quietest(found)
 
     def _require_known(self) -> None:
-        """Refuse bounds of what the model does not have."""
+        """Refuse bounds on quantities that the model does not have."""
         tree, model = self.derivation.structure, self.derivation.system
         bounds = model.bounds
         known: dict[str, Iterable[str]] = {
@@ -153,12 +161,13 @@ class Drawing:
                     raise ModelError("check", problem)
 
     def _point(self, reach: float, place: int) -> Point:
-        """A state at which everything is defined, and nothing nearly singular."""
+        """Draw one state at which all laws are defined and M is regular."""
         first: ModelError | None = None
         defined = False
         for attempt in range(TRIES):
-            # roots, logarithms and gaps want what is positive
+            # Roots, logarithms and gaps need positive arguments, so every second try draws positive values.
             low = -1.0 if attempt % 2 == 0 else 0.2
+            # Later tries keep the model's own parameters: laws may be undefined for others.
             varied = self.varied and place % 2 == 1 and attempt < TRIES // 2
             try:
                 rest = place == 0 and attempt < 2
@@ -180,7 +189,7 @@ class Drawing:
         raise ModelError(who, SINGULAR)
 
     def _somewhere(self) -> Numeric | None:
-        """The model for some inputs, at a time, to ask whose law is not defined."""
+        """The model at some inputs and time, for finding the component whose law is undefined."""
         tree, bounds = self.derivation.structure, self.derivation.system.bounds
         u = self._some(tree.inputs, bounds.inputs, (-1.0, 1.0))
         try:
@@ -196,13 +205,13 @@ class Drawing:
         rest: bool,
         slow: float,
     ) -> Point | None:
-        """A state: at rest in mechanics, or a random one, on the constraints if there are any.
+        """Draw a state: at rest in mechanics, or random; on the constraints if there are any.
 
         Args:
-            within: the least value drawn, and how far states of networks and inputs reach.
-            p: parameters that have not their own values, if any.
-            rest: whether it is to be at rest.
-            slow: what velocities are multiplied by, those of masses in networks too.
+            within: the least value drawn, and the largest states of networks and inputs.
+            p: values of parameters that differ from the model's own, if any.
+            rest: whether mechanics is at rest.
+            slow: factor on velocities, those of masses in networks included.
 
         Returns:
             None where the loops do not close, or not within the bounds.
@@ -216,7 +225,7 @@ class Drawing:
         numeric = self.derivation.numeric(p, t, u)
         both = tree.velocities[:first], tree.velocities[first:]
         states = self._some(both[1], bounds.velocities, (reach * low, reach))
-        # masses of networks have dry friction too
+        # Masses of networks have dry friction, too, so they are slowed like those of mechanics.
         free = [x.unit in RATES and x.name not in bounds.velocities for x in both[1]]
         states = [short(slow * x) if can else x for x, can in zip(states, free, strict=True)]
         v = self._some(both[0], bounds.velocities, (-slow, slow), still=rest)
@@ -238,19 +247,16 @@ class Drawing:
         numeric.tree.normalise(beside)
         beside = _held(tree.positions, bounds.coordinates, beside)
         a, off, lam = (self._plain(n) for n in (len(v), len(v), len(equations(tree))))
-        # what networks store is not constrained, and keeps its size
+        # States of networks are not constrained; they keep their values and with these their size.
         off = _held(tree.velocities, bounds.velocities, [*off[:first], *v[first:]])
         off_q = [short(x, 15) for x in beside]
         return Point(self.derivation, t, u, q, v, a, off_q, off, self.kept, p or {}, lam)
 
     def _parameters(self, *, varied: bool, zeros: bool = False) -> dict[str, float] | None:
-        """Values of the parameters that are not the model's own; None where all are.
+        """Draw values of parameters that differ from the model's own; None if none may differ.
 
-        What redundant constraints are made of keeps its value where loops do not close with another.
-
-        Args:
-            varied: whether any is to have another value.
-            zeros: whether those that are zero are.
+        Parameters that would open loops of redundant constraints keep their values; those that are zero
+        differ only with `zeros`.
         """
         model, found = self.derivation.system, {}
         for parameter in model.parameters.values():
@@ -267,7 +273,7 @@ class Drawing:
 
     @cached_property
     def _little(self) -> dict[str, float]:
-        """Values for parameters that are zero: little beside all others of their unit, if there are some."""
+        """Small values for parameters that are zero, compared with others of their unit."""
         own = [p for p in self.derivation.system.parameters.values() if not p.derived]
         found = {}
         for parameter in own:
@@ -279,7 +285,7 @@ class Drawing:
 
     @cached_property
     def _fixed(self) -> frozenset[str]:
-        """Parameters of redundant constraints that close no loop, or bind otherwise, with other values."""
+        """Parameters whose change opens a loop or changes the rank of redundant constraints."""
         derivation = self.derivation
         if not derivation.structure.closed or not derivation.assembled.redundant:
             return frozenset()
@@ -291,7 +297,7 @@ class Drawing:
         return frozenset(name for name, other in others.items() if not self._closes({name: other}))
 
     def _closes(self, p: dict[str, float]) -> bool:
-        """Whether loops close with these parameters, with as many constraints independent as ever."""
+        """Whether loops close with these parameters and the rank of the constraints stays the same."""
         derivation, bounds = self.derivation, self.derivation.system.bounds
         u = self._some(derivation.structure.inputs, bounds.inputs, (-1.0, 1.0))
         try:
@@ -305,7 +311,7 @@ class Drawing:
             return False
 
     def _legal(self, numeric: Numeric, q: Sequence[float], v: Sequence[float]) -> bool:
-        """Whether the loops are closed, and everything is within its bounds."""
+        """Whether the loops are closed and everything is within its bounds."""
         tree, bounds = self.derivation.structure, self.derivation.system.bounds
         gaps = [*numeric.constraints(q), *numeric.constraint_rates(q, v)]
         pairs = [(tree.positions, q, bounds.coordinates), (tree.velocities, v, bounds.velocities)]
@@ -325,7 +331,7 @@ class Drawing:
         *,
         still: bool = False,
     ) -> list[float]:
-        """One number for each quantity, within its bounds where it has some."""
+        """Draw one number for each quantity, within its bounds where it has some."""
         if still:
             return _held(quantities, bounds, [0.0] * len(quantities))
         return [self._one(within, bounds.get(x.name)) for x in quantities]
@@ -337,14 +343,14 @@ class Drawing:
         return [self._one((-1.0, 1.0), None) for _ in range(count)]
 
     def _folding(self, point: Point) -> bool:
-        """Whether more moves there than elsewhere: a parallelogram laid flat has no one acceleration."""
+        """Whether the rank drops there: a parallelogram laid flat has no unique acceleration."""
         closed = self.derivation.structure.closed and not self.derivation.idle
         return closed and point.rank < self.derivation.assembled.rank
 
     def _defined(self, point: Point) -> bool:
-        """Whether all is finite there, and accelerations are not what is left of far larger things."""
+        """Whether all results are finite and accelerations are not small remainders of far larger terms."""
         np = point.walk.np
-        # where M is singular everywhere, nothing that is emitted divides by it
+        # Where M is singular everywhere, no emitted function divides by it.
         solving = not self.derivation.idle
         for name, made in (pair for asked in self.chosen for pair in asked.items()):
             try:
@@ -363,13 +369,13 @@ class Drawing:
 def _held(
     quantities: Sequence[Quantity], bounds: Mapping[str, Interval], values: Sequence[float]
 ) -> list[float]:
-    """Values moved into their bounds."""
+    """Clip values to their bounds."""
     pairs = [(x, bounds.get(quantity.name)) for quantity, x in zip(quantities, values, strict=True)]
     return [x if bound is None else min(max(x, bound[0]), bound[1]) for x, bound in pairs]
 
 
 def _at_rest(derivation: Derived) -> list[float]:
-    """Where the frames of all joints coincide."""
+    """Coordinates at which the two frames of every joint coincide."""
     q = [0.0] * len(derivation.structure.positions)
     for link in derivation.structure.links:
         places = link.place.positions
@@ -384,5 +390,10 @@ def _regular(np: Any, value: Any, size: Any, least: float = 1.0) -> bool:
 
 
 def short(x: float, digits: int = DIGITS) -> float:
-    """A number rounded to some significant digits."""
+    """Round a number.
+
+    Args:
+        x: the number.
+        digits: how many significant decimal digits remain.
+    """
     return float(f"{x:.{digits}g}")

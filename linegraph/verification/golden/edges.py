@@ -1,6 +1,6 @@
-"""What every edge does, as emitted functions return it: reactions, across variables, drives, powers, outputs.
+"""Variables of all edges, in the order of emitted functions: reactions, across variables, drives and powers.
 
-All from the cuts (`cuts`): no expression of the inverse scheme of the emitted program enters.
+All are read from the cuts (`cuts`); the inverse scheme of the emitted program is not used.
 """
 
 from __future__ import annotations
@@ -16,11 +16,12 @@ from linegraph.components.forces import Load
 from linegraph.model.choices import GROUND_AXES, HEAD
 from linegraph.model.terminal_graphs import terminals_of
 from linegraph.verification.golden.constraints import Constraints
-from linegraph.verification.golden.cuts import Cuts, Pull
+from linegraph.verification.golden.pulls import Pull
 from linegraph.verification.golden.walk import own_rates
 
 if TYPE_CHECKING:
     from linegraph.kinematics.links import Closure
+    from linegraph.verification.golden.cuts import Cuts
     from linegraph.verification.golden.walk import Valued
 
     Array = Any
@@ -28,16 +29,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Edges:
-    """Variables of all edges.
+    """Across and through variables of all edges at a state; each result is an array with sizes.
 
     Attributes:
-        cuts: what acts, joint by joint.
+        cuts: wrenches in all edges.
     """
 
     cuts: Cuts
 
     def reaction(self, name: str) -> tuple[Array, float, float]:
-        """What a joint exerts on its head, force then torque, in the axes chosen, and its sizes."""
+        """Wrench of a joint or constraint on its head, about the head's origin, in the axes the model chose.
+
+        Returns:
+            Force (N) then torque (N m), 6; the size of the force; the size of the torque.
+        """
         tail, head = self.cuts.walk.tree.ends[name].component.between
         axes = {HEAD: head, GROUND_AXES: GROUND}.get(self.cuts.model.choices.reactions, tail)
         np, pull = self.cuts.walk.np, self.cuts.joints[name]
@@ -47,12 +52,12 @@ class Edges:
 
     @cached_property
     def _doubt(self) -> float:
-        """What sizes of reactions are multiplied by where ends of loops miss each other a little."""
+        """Factor on sizes of reactions where the ends of loops miss each other slightly."""
         return Constraints(self.cuts.walk).doubt
 
     @property
     def reactions(self) -> Valued:
-        """Of every joint and constraint, then what flows through the edges of networks."""
+        """Wrenches of all joints and constraints (6 each), then through variables of networks."""
         np = self.cuts.walk.np
         found, sizes = [], []
         for name in self.cuts.walk.tree.ends:
@@ -64,7 +69,11 @@ class Edges:
 
     @property
     def across(self) -> Valued:
-        """Of every edge of mechanics velocity and angular velocity, then of networks."""
+        """Across variables of all edges: of mechanics 6 each, then those of networks.
+
+        An edge of mechanics has its head's velocity less its tail's, then the same of angular velocities,
+        in ground axes (m/s, rad/s).
+        """
         np = self.cuts.walk.np
         found, sizes = [], []
         for tail, head, rigid in self.ends.values():
@@ -78,7 +87,7 @@ class Edges:
 
     @cached_property
     def ends(self) -> dict[str, tuple[str, str, bool]]:
-        """Tail and head of every edge of mechanics, and whether it is a rigid arm."""
+        """Tail and head of every edge of mechanics by name, and whether the edge is a rigid arm."""
         found = {
             f"{body}/inertia": (GROUND, f"{body}.{MASS_CENTER}", False)
             for body in self.cuts.model.bodies
@@ -99,7 +108,10 @@ class Edges:
 
     @cached_property
     def network(self) -> tuple[Valued, Valued]:
-        """Across and through variables of the edges of networks, by their laws in numbers."""
+        """Across and through variables of the edges of networks, each with sizes.
+
+        Their laws are evaluated in floats.
+        """
         np, exchange = self.cuts.walk.np, self.cuts.acting.exchange
         empty = np.zeros(0)
         if exchange is None:
@@ -114,7 +126,10 @@ class Edges:
 
     @property
     def drives(self) -> Valued:
-        """The effort along each prescribed coordinate: what its joint exerts on the motion it makes."""
+        """Effort along each prescribed coordinate, exerted by the joint on its head (N or N m).
+
+        It is positive in the direction of the coordinate.
+        """
         np, found, sizes = self.cuts.walk.np, [], []
         for name, closure in self.cuts.walk.tree.ends.items():
             joint: Any = closure.component
@@ -131,7 +146,7 @@ class Edges:
         return np.array(found), np.array(sizes)
 
     def _motions(self, closure: Closure) -> list[tuple[Array, Array]]:
-        """Of each velocity of a prescribed joint the turn and the shift of its head, in its tail's axes."""
+        """Unit motions of a prescribed joint: angular and linear velocity of its head, in its tail's axes."""
         np, joint = self.cuts.walk.np, closure.component
         algebra = self.cuts.walk.numeric.algebra
         at = tuple(float(x.x) for x in closure.drive if x is not None)
@@ -151,14 +166,18 @@ class Edges:
 
     @property
     def powers(self) -> Valued:
-        """Through times across of every edge: translation, rotation, lever; then of networks."""
+        """Through times across of all edges (W), of mechanics 3 each: translation, rotation and lever.
+
+        The lever is the moment of an edge's force about its tail, times the tail's angular velocity. One
+        power for each edge of a network follows.
+        """
         np, found, sizes = self.cuts.walk.np, [], []
         for name, (force, torque, tail) in self._exerted.items():
             first, second = self.cuts.place(self.ends[name][0]), self.cuts.place(self.ends[name][1])
             rigid = self.ends[name][2]
             turning = np.zeros(3) if rigid else second.angular - first.angular
             lever = -np.cross(second.origin - first.origin, force.force) if tail else np.zeros(3)
-            # ends that coincide are apart by the rounding of where they are
+            # Ends that coincide are apart by the rounding of their positions.
             far = np.linalg.norm(second.origin) + np.linalg.norm(first.origin)
             reach = float(far) if tail else 0.0
             found += [
@@ -188,7 +207,7 @@ class Edges:
 
     @property
     def sums(self) -> Valued:
-        """What powers sum up to: nothing, in translation, in rotation with levers, in each network."""
+        """Sums of powers, all zero: in translation, in rotation with levers, and in each network."""
         np, exchange = self.cuts.walk.np, self.cuts.acting.exchange
         _, sizes = self.powers
         count = 3 * len(self._exerted)
@@ -207,10 +226,10 @@ class Edges:
 
     @cached_property
     def _exerted(self) -> dict[str, tuple[Pull, Array, bool]]:
-        """Of each edge of mechanics its force, its torque, and whether its tail feels the lever.
+        """For each edge its wrench on the head, its torque, and whether its tail feels the lever.
 
-        Inertia edges and loads end at ground, whose rate is zero. Rigid arms carry what the other edges of
-        their terminal exert: the vertex postulate.
+        Inertia edges and loads end at ground, whose velocity is zero. By the vertex postulate a rigid arm
+        carries the wrenches of all other edges at its terminal.
         """
         np = self.cuts.walk.np
         found: dict[str, tuple[Pull, Array, bool]] = {}

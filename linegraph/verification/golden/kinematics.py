@@ -1,7 +1,8 @@
-"""Kinematics from where the bodies are: frames as places on them, the whole as their sum.
+"""Kinematics of frames from positions of bodies, and of the whole system as sums over bodies.
 
-A frame is a place on a body, whose derivatives along the motion say how it moves. Momentum is that of every
-body, and its rate what the bodies need without gravity. Nothing is carried from joint to joint.
+A frame is a place on a body; its velocity and acceleration are derivatives of the place along the motion.
+Momentum is the sum over bodies, and its rate is the wrench that they need without gravity. Nothing is
+propagated from joint to joint. Centroidal quantities: [Orin et al. 2013].
 """
 
 from __future__ import annotations
@@ -25,11 +26,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class KinematicReference:
-    """Frames of a model, and all of it, at a state.
+    """Motion of frames and of the whole system at a state, in ground axes.
+
+    Each result is an array with sizes.
 
     Attributes:
-        walk: how everything moves there.
-        bodies: what has mass.
+        walk: the motion of all links.
+        bodies: the moments of all bodies.
     """
 
     walk: Walk
@@ -38,7 +41,11 @@ class KinematicReference:
     # -- of a frame
 
     def frame(self, name: str) -> Moved:
-        """How it moves: a body, a frame of one, or its mass centre."""
+        """Motion of a body, a frame of a body or a mass centre, in ground axes.
+
+        Args:
+            name: ``body``, ``body.frame`` or the body with the suffix of its mass centre.
+        """
         model, resolve = self.walk.tree.system, self.walk.numeric.resolve
         assert model is not None
         terminals = terminals_of(model)
@@ -55,7 +62,7 @@ class KinematicReference:
         return self.walk.moved(link, origin, tuple(map(tuple, rotation)))
 
     def _center(self, name: str) -> Any:
-        """Where a body's mass centre is, in the body's own frame."""
+        """Position of a body's mass centre in the body's own frame (m)."""
         model, resolve = self.walk.tree.system, self.walk.numeric.resolve
         assert model is not None
         body = model.bodies[name]
@@ -65,28 +72,31 @@ class KinematicReference:
         return tuple(float(resolve(x)) / mass if mass else 0.0 for x in body.first)
 
     def position(self, frame: str) -> Valued:
-        """Its origin."""
+        """Position of a frame's origin, 3, from ground's origin in ground axes (m)."""
         return _alike(self.walk.np, self.frame(frame).origin)
 
     def rotation(self, frame: str) -> Valued:
-        """Its axes, in columns."""
+        """Rotation matrix, 3 x 3: the columns are the frame's axes in ground axes."""
         turn = self.frame(frame).rotation
         return turn, self.walk.np.ones((3, 3))
 
     def velocity(self, frame: str) -> Valued:
-        """Of its origin, and angular."""
+        """Velocity of a frame's origin (m/s), then angular velocity (rad/s), 6, in ground axes."""
         J, _ = self.jacobian(frame)
         moved = self.frame(frame)
         found = self.walk.np.concatenate([moved.linear[:, -1], moved.angular[:, -1]])
         return self._in_halves(found, self.walk.np.abs(J) @ self.walk.np.abs(self.walk.v))
 
     def jacobian(self, frame: str) -> Valued:
-        """The same for every unit velocity; a half column is judged by its length."""
+        """Jacobian of a frame, 6 x n: linear rows, then angular; the size of a half column is its length."""
         moved = self.frame(frame)
         return self._columns(moved.linear[:, :-1], moved.angular[:, :-1])
 
     def jacobian_dot_v(self, frame: str) -> Valued:
-        """Their rates at v̇ = 0; at speeds v of the size of J v², of which much may cancel."""
+        """``J̇ v``, 6: acceleration of a frame at v̇ = 0, linear then angular, in ground axes.
+
+        Sizes are ``|J| |v|`` times the fastest angular velocity, since much of it may cancel.
+        """
         np, v = self.walk.np, self.walk.np.abs(self.walk.v)
         J, moved = np.abs(self.jacobian(frame)[0]), self.frame(frame)
         found = np.concatenate([moved.pull, moved.spin])
@@ -94,14 +104,14 @@ class KinematicReference:
 
     @property
     def _turning(self) -> float:
-        """How fast anything turns at most."""
+        """Upper bound on the angular velocity of anything."""
         return float(self.walk.np.abs(self.walk.v).sum())
 
     # -- of the whole
 
     @cached_property
     def _whole(self) -> tuple[float, Array]:
-        """Mass, and centre of mass."""
+        """Total mass (kg) and position of the mass centre in ground axes (m)."""
         np = self.walk.np
         heavy = self.bodies.heavy
         mass = sum(body.mass for body in heavy)
@@ -109,10 +119,10 @@ class KinematicReference:
         return mass, np.sum(firsts, axis=0) / mass
 
     def _summed(self, forces: Iterable[tuple[Array, Array]]) -> Valued:
-        """Sums of what each body has, a force and a torque about its own point, about the mass centre.
+        """Sum wrenches of all bodies, each about its own reference point, about the total mass centre.
 
         Returns:
-            6 x k, the torques last; a half of a column is judged by the lengths of what it is the sum of.
+            6 x k, torques last; the size of half a column is the sum of the lengths of its terms.
         """
         np, (_, center) = self.walk.np, self._whole
         found = size = 0.0
@@ -120,7 +130,7 @@ class KinematicReference:
             arm = body.moved.origin - center
             arms = np.broadcast_to(arm[:, None], force.shape)
             found = found + np.vstack([force, torque + np.cross(arms, force, axis=0)])
-            # about the mass centre what forces do about ground's origin may cancel
+            # Moments about ground's origin may cancel when taken about the mass centre.
             pull = np.linalg.norm(force, axis=0)
             reach = np.linalg.norm(arm) + np.linalg.norm(center)
             size = size + np.vstack([pull, np.linalg.norm(torque, axis=0) + reach * pull])
@@ -128,13 +138,13 @@ class KinematicReference:
 
     @cached_property
     def _momenta(self) -> Valued:
-        """Momentum for unit velocities, then that of the state."""
+        """Momentum for unit velocities, then that of the state, 6 x (n + 1)."""
         heavy, needed = self.bodies.heavy, self.bodies.needed
         return self._summed([needed(x, x.moved.linear, x.moved.angular) for x in heavy])
 
     @property
     def com(self) -> Valued:
-        """Centre of mass."""
+        """Position of the total mass centre, 3, in ground axes (m)."""
         np, (mass, center) = self.walk.np, self._whole
         size = sum(
             np.abs(body.mass * body.moved.origin) + np.abs(body.first) for body in self.bodies.heavy
@@ -143,31 +153,34 @@ class KinematicReference:
 
     @property
     def com_velocity(self) -> Valued:
-        """Its velocity: momentum by mass."""
+        """Velocity of the total mass centre, 3, in ground axes (m/s): linear momentum divided by mass."""
         (found, size), mass = self.momentum, self._whole[0]
         return found[:3] / mass, size[:3] / mass
 
     @property
     def com_jacobian(self) -> Valued:
-        """The same for every unit velocity."""
+        """Jacobian of the total mass centre, 3 x n, in ground axes."""
         (found, size), mass = self.momentum_matrix, self._whole[0]
         return found[:3] / mass, size[:3] / mass
 
     @property
     def momentum(self) -> Valued:
-        """Linear, and angular about the centre of mass."""
+        """Linear momentum, then angular momentum about the total mass centre, 6, in ground axes."""
         (found, size), np = self._momenta, self.walk.np
         return found[:, -1], np.maximum(size[:, -1], size[:, :-1] @ np.abs(self.walk.v))
 
     @property
     def momentum_matrix(self) -> Valued:
-        """The same for every unit velocity."""
+        """Centroidal momentum matrix A_G, 6 x n, linear rows first; ``A_G v`` is the momentum.
+
+        See [Orin et al. 2013].
+        """
         found, size = self._momenta
         return found[:, :-1], size[:, :-1]
 
     @property
     def momentum_rate(self) -> Valued:
-        """What the bodies need at v̇ = 0 without gravity; of the size of momentum that turns."""
+        """``Ȧ_G v``, 6: rate of momentum at v̇ = 0, from the bodies' wrenches without gravity (N, N m)."""
         np = self.walk.np
         forces = [self.bodies.required(body, body.moved.pull) for body in self.bodies.heavy]
         found, size = self._summed([(x[:, None], y[:, None]) for x, y in forces])
@@ -176,18 +189,18 @@ class KinematicReference:
     # -- what entries are made of
 
     def _columns(self, linear: Array, angular: Array) -> Valued:
-        """Rows of motion and of turning; each half of a column is judged by its length."""
+        """Stack linear and angular rows; the size of half a column is its length."""
         np = self.walk.np
         lengths = [np.linalg.norm(half, axis=0) for half in (linear, angular)]
         return np.vstack([linear, angular]), np.repeat(lengths, 3, axis=0)
 
     def _in_halves(self, found: Array, size: Array) -> Valued:
-        """Each half is judged by the largest of it."""
+        """Give each half of a vector the size of its largest entry."""
         np = self.walk.np
         size = np.maximum(np.abs(found), size)
         return found, np.repeat([size[:3].max(), size[3:].max()], 3)
 
 
 def _alike(np: Any, found: Array) -> Valued:
-    """A vector whose entries are judged by its length."""
+    """Give all entries of a vector the vector's length as size."""
     return found, np.full(found.shape, np.linalg.norm(found))

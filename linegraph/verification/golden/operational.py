@@ -1,6 +1,6 @@
-"""Operational space of a frame: its Jacobian and the equations of motion, put together by NumPy.
+"""Operational space of a frame, from its Jacobian and the equations of motion, by NumPy [Khatib 1987].
 
-With constraints in the independent velocities: J T for J, Mr and hr for M and h, and v by T again.
+With constraints, all in independent velocities: J T for J, Mr and hr for M and h, and v = T w + rest.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 class _ReferenceDynamics(NamedTuple):
-    """M and h in coordinates without constraints; J and the rate of the frame's velocity there.
+    """M and h in coordinates without constraints, J there, and the rate J̇ v of the frame's velocity.
 
-    Each is followed by what it is made of.
+    Each is an array and its sizes.
     """
 
     mass: Valued
@@ -30,12 +30,12 @@ class _ReferenceDynamics(NamedTuple):
 
 @dataclass(frozen=True)
 class Operational:
-    """What a frame is to forces on it.
+    """Equations of motion of a frame: ``Λ ẍ + μ = F`` for a wrench F on it.
 
     Attributes:
-        point: the state, and what is known there.
-        frame: its name.
-        rows: how many rows of its Jacobian count: 6, or the 3 of its origin's motion.
+        point: the state and the reference quantities at it.
+        frame: name of the frame.
+        rows: 6, or 3 for the motion of its origin only.
     """
 
     point: Point
@@ -62,28 +62,29 @@ class Operational:
 
     @cached_property
     def _inverse(self) -> Array:
-        """M⁻¹."""
+        """M⁻¹, computed with velocities scaled to unit inertia."""
         np, (M, of_M) = self.point.walk.np, self._dynamics.mass
         scale = self.point.scale(of_M, of_M[:0])[0]
+        # Scaled to unit inertia, so that units do not decide which entries are rounding.
         return np.linalg.inv(M * scale * scale[:, None]) * scale * scale[:, None]
 
     @cached_property
     def _mobility(self) -> Valued:
-        """``J M⁻¹ Jᵀ``; as of any such product no entry exceeds the geometric mean of the diagonal's."""
+        """``J M⁻¹ Jᵀ``; each size is the geometric mean of two diagonal entries, which no entry exceeds."""
         np, J = self.point.walk.np, self._dynamics.jacobian[0]
         found = J @ self._inverse @ J.T
         return found, np.outer(*2 * [np.sqrt(np.diag(found))])
 
     @cached_property
     def inertia(self) -> Valued:
-        """Λ."""
+        """Operational space inertia Λ = (J M⁻¹ Jᵀ)⁻¹, rows x rows, in ground axes."""
         np, (mobility, size) = self.point.walk.np, self._mobility
         found = np.linalg.inv(mobility)
         return found, np.abs(found) @ size @ np.abs(found)
 
     @cached_property
     def bias(self) -> Valued:
-        """μ."""
+        """Operational space bias μ = Λ (J M⁻¹ h - J̇ v), rows, in ground axes."""
         np, known = self.point.walk.np, self._dynamics
         J, (h, of_h), (rate, of_rate) = known.jacobian[0], known.bias, known.rate
         inertia, of_inertia = self.inertia
@@ -94,7 +95,7 @@ class Operational:
 
     @cached_property
     def inverse(self) -> Valued:
-        """J̄."""
+        """Dynamically consistent inverse J̄ = M⁻¹ Jᵀ Λ, n x rows; premultiplied by T under constraints."""
         np, inertia = self.point.walk.np, self.inertia[0]
         T = np.eye(len(self._inverse))
         if self.point.walk.tree.closed:

@@ -1,6 +1,6 @@
-"""Outputs that the model asks for by name: its own expressions, of what is known of every edge.
+"""Outputs that the model defines by name: its own expressions of coordinates and variables of edges.
 
-What an expression is made of follows from its slopes: by each name, times how large what that is made of is.
+The size of an expression is the sum over its names of slope times size.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from linegraph.verification.golden.walk import Valued
 
 Sized = tuple[float, float]
-"""A number, and how large what it is made of is."""
+"""A number and its size: the magnitude of the terms that it is the sum of."""
 
 OF_POINTS = {
     "position": ("origin", ""),
@@ -29,7 +29,7 @@ OF_POINTS = {
     "angular_velocity": ("angular", "of_angular"),
     "angular_acceleration": ("spin", "of_spin"),
 }
-"""Of each variable of a point what a place calls it, and its size."""
+"""For each variable of a point the attributes of `GroundPlace` with its value and its size."""
 
 
 @dataclass(frozen=True)
@@ -37,14 +37,18 @@ class Outputs:
     """The outputs of a model at a state.
 
     Attributes:
-        edges: every edge there.
+        edges: variables of all edges there.
     """
 
     edges: Edges
 
     @property
     def values(self) -> Valued:
-        """One number for each output."""
+        """One number for each output, in declared order, with sizes.
+
+        Raises:
+            ModelError: an expression has no value at this state; names the output.
+        """
         cuts = self.edges.cuts
         pairs = []
         for output in cuts.model.outputs:
@@ -56,7 +60,7 @@ class Outputs:
         return values, sizes
 
     def _value(self, given: Any) -> Sized:
-        """An expression, and what it is made of."""
+        """Value and size of an expression."""
         np, algebra = self.edges.cuts.walk.np, self.edges.cuts.walk.numeric.algebra
         names = sorted(names_in(given))
         known = {name: self._known(name) for name in names}
@@ -68,7 +72,7 @@ class Outputs:
         return float(found.x), abs(float(found.x)) + float(slopes @ sizes)
 
     def _known(self, name: str) -> Sized:
-        """What a name in an expression stands for."""
+        """Value and size of a name in an expression."""
         variable = variable_of(name)
         if variable is not None:
             return self._variable(*variable)
@@ -82,7 +86,7 @@ class Outputs:
         return float(values[name]), float(walk.np.abs(walk.v).sum()) * name.startswith("der(")
 
     def _variable(self, kind: str, thing: str, part: str) -> Sized:
-        """A variable of an edge or a point."""
+        """Value and size of a variable of an edge or a point."""
         cuts = self.edges.cuts
         if kind in OF_POINTS:
             place, (what, size) = cuts.place(thing), OF_POINTS[kind]
@@ -101,7 +105,7 @@ class Outputs:
         return float(half["xyz".index(part)]), of_force if kind == "force" else of_torque
 
     def _tension(self, element: Element, kind: str) -> Sized:
-        """A force element's length or coordinate, or its through variable."""
+        """Length or coordinate of a force element, or its through variable, with its size."""
         cuts, np = self.edges.cuts, self.edges.cuts.walk.np
         if element.between is None:
             x, y = cuts.acting.in_joint(element)

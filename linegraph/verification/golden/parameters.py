@@ -1,15 +1,16 @@
-"""What identification asks for: Y of ``tau = Y pi + rest``, and the model's own pi.
+"""Y and rest of ``tau = Y pi + rest``, and the model's own parameters pi, by Newton and Euler.
 
-A column of a link's moments is what Newton and Euler ask of a body that has 1 for one moment, about the
-origin of the body that the link's joint carries, and 0 for all others:
+A column of a link's moments is the generalised force of a body with 1 for one moment, about the origin of
+the body that the link's joint carries, and 0 for all others:
 
     f = m a + α x b + ω x (ω x b)      n = J α + ω x J ω + b x a      column = Jᵀ (f, n)
 
-with a less gravity and α at the accelerations given. A column of a joint is the effort along its rate, which
-is the derivative of its coordinate. pi are masses, first moments and inertias of the bodies of a link as the
-model gives them, moved to that origin and summed, and what its dampers and frictions say. rest is tau of all
-bodies and elements, less Y pi: nothing is missing and nothing is counted twice. Which joints have parameters,
-and to which of them a joint that follows adds, is part of what pi means.
+with a less gravity and α at the given accelerations [Atkeson et al. 1986]. A column of a joint is the
+effort along its rate, the derivative of its coordinate. The values pi are masses, first moments and
+inertias of a link's bodies as given in the model, moved to that origin and summed, and the constants of its
+dampers and frictions. rest is tau of all bodies and elements less Y pi, so no term is missing and none is
+counted twice. The definition of pi also fixes which joints have parameters and to which of them a following
+joint adds.
 """
 
 from __future__ import annotations
@@ -38,18 +39,18 @@ if TYPE_CHECKING:
     Array = Any
 
 UPPER = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
-"""Where xx, xy, yy, xz, yz, zz are."""
+"""Row and column of xx, xy, yy, xz, yz, zz."""
 
 
 @dataclass(frozen=True)
 class Parameters:
-    """Standard parameters at a state.
+    """Standard parameters and regressor at a state.
 
     Attributes:
-        walk: how everything moves there.
-        bodies: what that takes.
-        a: the accelerations.
-        tau: M a + h.
+        walk: the motion of all links.
+        bodies: Newton's and Euler's equations.
+        a: v̇, n.
+        tau: M a + h, n, with sizes.
     """
 
     walk: Walk
@@ -63,7 +64,7 @@ class Parameters:
 
     @cached_property
     def regressor(self) -> Valued:
-        """Y, n x npi."""
+        """Regressor Y, n x npi, at q, v and the given v̇."""
         np, tree = self.walk.np, self.walk.tree
         columns, sizes = [], []
         for link, home in enumerate(homes(tree)):
@@ -81,7 +82,7 @@ class Parameters:
         return np.array(columns).T, np.array(sizes).T
 
     def _of_link(self, moved: Moved) -> list[Valued]:
-        """The columns of a link's moments, for a place on it that moves so."""
+        """Columns of a link's ten moments, for the given motion of the frame they refer to."""
         np = self.walk.np
         linear, angular = moved.linear[:, :-1], moved.angular[:, :-1]
         gravity = np.array(self.walk.tree.gravity, float)
@@ -108,7 +109,7 @@ class Parameters:
 
     @cached_property
     def values(self) -> Valued:
-        """Pi, npi."""
+        """Standard parameters pi, npi: ten of each link, then three of each joint, in SI units."""
         np = self.walk.np
         moments = self._moments()
         values = [x for found, _ in moments for x in found]
@@ -121,7 +122,7 @@ class Parameters:
         return np.array(values), np.abs(sizes)
 
     def _moments(self) -> list[tuple[list[float], list[float]]]:
-        """Of each link its ten moments about its home, and how large what they are sums of is."""
+        """For each link its ten moments about its home frame, and their sizes."""
         np, resolve, tree = self.walk.np, self.walk.numeric.resolve, self.walk.tree
         model = self.walk.tree.system
         assert model is not None
@@ -141,7 +142,7 @@ class Parameters:
             b = turn @ np.array([float(resolve(x)) for x in body.first or ZERO])
             xx, xy, xz, yy, yz, zz = (float(resolve(x)) for x in body.inertia)
             own = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-            # ∫ (r² 1 - r rᵀ) with r = arm + what is about the body's own point
+            # ∫ (r² 1 - r rᵀ) dm with r = arm + r', r' from the body's own reference point.
             mixed = np.outer(arm, b)
             moved = (m * arm @ arm + 2 * arm @ b) * np.eye(3)
             moved -= m * np.outer(arm, arm) + mixed + mixed.T
@@ -157,7 +158,7 @@ class Parameters:
         return rows
 
     def _worn(self) -> tuple[dict[str, float], dict[str, float]]:
-        """Viscous and dry friction by joint, as far as they are constants that Y has columns for."""
+        """Viscous and dry friction by joint, as far as they are constants for which Y has columns."""
         model, resolve = self.walk.tree.system, self.walk.numeric.resolve
         assert model is not None
         known = {axis.joint: axis for axis in self._axes}
@@ -182,9 +183,10 @@ class Parameters:
         return damping, friction
 
     def _rotors(self) -> dict[str, float]:
-        """By joint the inertia of what networks turn with it, as far as it is constant: from their energy.
+        """By joint, the constant inertia of network rotors that turn with it, from their stored energy.
 
-        With one edge in mechanics moving at w, and all else at rest, E = J w² / 2 and nothing in w alone.
+        With one edge in mechanics moving at w and all else at rest, ``E = J w² / 2``; terms linear in w
+        cancel in ``E(1) + E(-1) - 2 E(0)``.
         """
         walk, model = self.walk, self.walk.tree.system
         known = {axis.joint: axis for axis in self._axes}
@@ -206,37 +208,37 @@ class Parameters:
 
     @staticmethod
     def _constant(at: Exchange, entry: Any) -> bool:
-        """Whether an inertia depends on parameters alone: of others it is no parameter of the joint."""
+        """Whether an inertia depends on parameters only; otherwise it is no parameter of the joint."""
         support = at.network.laws.calculus.support(entry)
         return {symbol[0] for symbol in support} <= {"p", CONSTANT}
 
     def _seat(self, known: dict[str, Axis], element: Element) -> tuple[Axis, float] | None:
-        """The joint whose parameters an element adds to, and how much faster its own joint turns."""
+        """The joint whose parameters an element adds to, and the ratio of the rates of both joints."""
         assert element.joint is not None
         return self._led(known, element.joint)
 
     def _led(self, known: dict[str, Axis], joint: str) -> tuple[Axis, float] | None:
-        """A joint that has parameters, or the one that it follows and how much faster it is."""
+        """A joint that has parameters itself, or the one it follows and the ratio of their rates."""
         if joint in known:
             return known[joint], 1.0
         found = led_by(self.walk.tree, known, joint)
         if found is None:
             return None
-        # by how fast both are, not by what the coupling says
+        # The ratio is measured from the motion, not read from the coupling, which the derivation uses.
         (own, _), (other, _) = (self.walk.along(x) for x in (joint, found[0].joint))
         place = int(self.walk.np.argmax(self.walk.np.abs(other[:-1])))
         return found[0], float(own[place] / other[place])
 
     @cached_property
     def rest(self) -> Valued:
-        """``tau - Y pi``, n."""
+        """``tau - Y pi``, n: generalised forces that are not linear in the parameters."""
         np = self.walk.np
         (Y, of_Y), (values, _), (tau, size) = self.regressor, self.values, self.tau
         return tau - Y @ values, size + of_Y @ np.abs(values)
 
 
 def _moving(at: Exchange, port: str, w: float) -> Exchange:
-    """The networks with one edge in mechanics moving at w, all others and all states at rest."""
+    """The networks with one edge in mechanics moving at w and all other edges and states at rest."""
 
     def motion(name: str) -> EdgeMotion:
         return replace(at.motion(name), w=w if name == port else 0.0)

@@ -1,7 +1,7 @@
-"""A state, and what is known there: everything that references are read from.
+"""A state and the reference quantities at it, from which references read their results.
 
-`walk` says how everything moves, `bodies` what that takes, `constraints` what is closed. What solves for
-accelerations is NumPy's.
+`walk` computes the motion of links, `bodies` Newton's and Euler's equations, `constraints` φ, J and γ.
+Accelerations and multipliers are solved for by NumPy, not by the emitted elimination.
 """
 
 from __future__ import annotations
@@ -34,7 +34,13 @@ View = TypeVar("View")
 
 
 class Kept(NamedTuple):
-    """What is independent under constraints: places of coordinates, of velocities, of changes of position."""
+    """Indices of the independent variables under constraints.
+
+    Attributes:
+        coordinates: places in q of the independent coordinates s.
+        velocities: places in v of the independent rates w.
+        changes: places in v of the independent changes of position.
+    """
 
     coordinates: tuple[int, ...] = ()
     velocities: tuple[int, ...] = ()
@@ -46,18 +52,22 @@ NOTHING = Kept()
 
 @dataclass(frozen=True)
 class Point:
-    """A state with all that functions are given there, and what is known of it.
+    """A state with all arguments that functions take there, and the reference quantities at it.
+
+    Results are pairs of an array and its sizes (`walk.Valued`).
 
     Attributes:
         derivation: the model.
-        t: the time.
-        u: the inputs.
-        q, v, a: the state and accelerations, which are any.
-        q_off, v_off: coordinates beside q that close no loop, and velocities that need not be allowed.
-        kept: what is independent.
-        p: values of parameters that are not the model's own.
-        lam: multipliers, which are any.
-        loud: whether steep laws act far more here than at other states; then it has a scale of its own.
+        t: time (s).
+        u: inputs.
+        q, v: coordinates and velocities, which obey the constraints.
+        a: arbitrary accelerations, for functions that take some.
+        q_off, v_off: coordinates near q that close no loop, and velocities that violate the constraints.
+        kept: indices of the independent variables.
+        p: values of parameters that differ from the model's own.
+        lam: arbitrary multipliers, for functions that take some.
+        loud: whether steep laws dominate here more than at other states; then sizes are those of this
+            state.
     """
 
     derivation: Derived
@@ -75,51 +85,66 @@ class Point:
 
     @property
     def s(self) -> list[float]:
-        """The independent coordinates."""
+        """The independent coordinates, taken from q."""
         return [self.q[k] for k in self.kept.coordinates]
 
     @property
     def w(self) -> list[float]:
-        """Their rates."""
+        """The independent rates, taken from v."""
         return [self.v[k] for k in self.kept.velocities]
 
     @property
     def x(self) -> list[float]:
-        """The whole state."""
+        """The whole state: q, then v."""
         return [*self.q, *self.v]
 
     @property
     def q_near(self) -> list[float]:
-        """A guess beside q; q itself where constraints of velocity leave more positions than velocities."""
+        """Coordinates near q as a starting guess; q itself if some constraints are on velocities only.
+
+        These leave more positions than velocities, so completing the position from a guess is not unique.
+        """
         found = equations(self.walk.tree)
         return self.q_off if all(e.holonomic for e in found) else self.q
 
     def at(self, q: Sequence[float], v: Sequence[float]) -> Walk:
-        """How everything moves at a state."""
+        """The motion of all links at other q and v, with this point's time, inputs and parameters.
+
+        Args:
+            q: nq coordinates.
+            v: n velocities.
+        """
         return Walk(self.derivation.numeric(self.p, self.t, self.u), q, v)
 
     @cached_property
     def walk(self) -> Walk:
-        """How everything moves here."""
+        """The motion of all links at q, v."""
         return self.at(self.q, self.v)
 
     @cached_property
     def beside(self) -> Point:
-        """The same where loops are not closed, at any velocities."""
+        """The same point with q and v that violate the constraints."""
         return replace(self, q=self.q_off, v=self.v_off)
 
     @cached_property
     def bodies(self) -> Bodies:
-        """What that takes."""
+        """Newton's and Euler's equations of all bodies at q, v."""
         return Bodies(self.walk)
 
     @cached_property
     def closed(self) -> Constraints:
-        """What is closed."""
+        """The constraints at q, v."""
         return Constraints(self.walk)
 
     def seen(self, view: Callable[[Point], View]) -> View:
-        """Another view of this state, made once: `derivatives.Derivatives` stands above this file."""
+        """Another view of this state, created once.
+
+        `derivatives.Derivatives` imports this file, so this file cannot import it and have it as a
+        property.
+
+        Args:
+            view: a class or function of a point; also the key under which the view is kept.
+        """
         if view not in self._views:
             self._views[view] = view(self)
         return self._views[view]  # type: ignore[no-any-return]
@@ -130,22 +155,22 @@ class Point:
 
     @cached_property
     def kinematics(self) -> KinematicReference:
-        """Frames, and the whole."""
+        """Motion of frames and of the whole system."""
         return KinematicReference(self.walk, self.bodies)
 
     @cached_property
     def parameters(self) -> Parameters:
-        """What identification asks for."""
+        """Regressor and standard parameters at the accelerations a."""
         return Parameters(self.walk, self.bodies, self.walk.np.array(self.a), self.inverse)
 
     @cached_property
     def edges(self) -> Edges:
-        """Every edge, under the inputs."""
+        """Variables of all edges for the inputs: at the v̇ and λ that follow from them."""
         return self._edges(*self.motion)
 
     @cached_property
     def edges_at(self) -> Edges:
-        """Every edge, at any accelerations and multipliers."""
+        """Variables of all edges at the given accelerations a and multipliers lam."""
         np = self.walk.np
         given = (np.array(x, float) for x in (self.a, self.lam))
         a, lam = ((x, np.zeros(len(x))) for x in given)
@@ -156,18 +181,21 @@ class Point:
 
     @cached_property
     def outputs(self) -> Valued:
-        """What the model asks for by name."""
+        """Outputs that the model defines by name."""
         return Outputs(self.edges).values
 
     @cached_property
     def force(self) -> Valued:
-        """Q - h."""
+        """Generalised force ``Q - h``, n."""
         (Q, of_Q), (h, of_h) = self.bodies.forces, self.bodies.bias
         return Q - h, of_Q + of_h
 
     @cached_property
     def stabilised(self) -> Valued:
-        """γ, with Baumgarte's terms if the model asks for them."""
+        """γ of the constraints, with Baumgarte's terms if the model has some [Baumgarte 1972].
+
+        ``γ - 2 α (J v - b) - β² φ``; constraints on velocities have no φ and no last term.
+        """
         bias, size = self.closed.bias
         chosen = self.derivation.system.choices.baumgarte
         if chosen is None:
@@ -180,14 +208,17 @@ class Point:
 
     @cached_property
     def motion(self) -> tuple[Valued, Valued]:
-        """v̇ and λ of ``M v̇ = Q - h + Jᵀ λ``, ``J v̇ = γ``, λ of least norm where it is not unique."""
+        """v̇ (n) and λ (c) of ``M v̇ = Q - h + Jᵀ λ``, ``J v̇ = γ``.
+
+        Λ of least norm where it is not unique.
+        """
         none = self.walk.np.zeros(0)
         right = self.stabilised if self.walk.tree.closed else (none, none)
         return self._saddle(self.bodies.mass_matrix, self._rows, self.force, right)
 
     @cached_property
     def _rows(self) -> Valued:
-        """J, empty without constraints."""
+        """J, with no rows in models without constraints."""
         if self.walk.tree.closed:
             return self.closed.jacobian
         none = self.walk.np.zeros((0, len(self.v)))
@@ -195,7 +226,7 @@ class Point:
 
     @cached_property
     def rank(self) -> int:
-        """How many constraints are independent, by what the assembly measures J with, and its threshold."""
+        """Number of independent constraints, with the scaling of J and the threshold of the assembly."""
         np, J = self.walk.np, self._rows[0]
         if not len(J):
             return 0
@@ -204,7 +235,7 @@ class Point:
 
     @cached_property
     def projected(self) -> Valued:
-        """Velocities that obey the constraints: from any, by the change of least kinetic energy."""
+        """Velocities that obey the constraints, reached from v_off by the change of least kinetic energy."""
         np, off = self.walk.np, self.at(self.q, self.v_off)
         zero, v = np.zeros(len(self.v)), np.array(self.v_off)
         rates, of_rates = Constraints(off).rates
@@ -215,32 +246,39 @@ class Point:
     def _saddle(
         self, masses: Valued, rows: Valued, force: Valued, right: Valued
     ) -> tuple[Valued, Valued]:
-        """Both unknowns of ``M x = force + Jᵀ y``, ``J x = right``, y of least norm if not unique."""
+        """Solve ``M x = force + Jᵀ y``, ``J x = right``; y of least norm where it is not unique.
+
+        The system is scaled first (`scale`), solved by a generalised inverse and refined once. Sizes are
+        first-order bounds of the effect of rounding in M, J and the right-hand side.
+        """
         np, n = self.walk.np, len(self.v)
         (M, of_M), (J, of_J) = masses, rows
         (upper, of_upper), (lower, of_lower) = force, right
         whole, size = np.concatenate([upper, lower]), np.concatenate([of_upper, of_lower])
         scale = np.concatenate(self.scale(of_M, of_J))
+        # Multipliers act on the head of a chord: they are on the right of M x = force + Jᵀ y.
         given = np.block([[M, -J.T], [J, np.zeros((len(J), len(J)))]])
         scaled, whole, size = given * scale * scale[:, None], whole * scale, size * scale
         inverse = self._inverse(scaled, n)
         found = inverse @ whole
+        # One step of iterative refinement reduces the rounding error of the generalised inverse.
         found += inverse @ (whole - scaled @ found)
-        # first order: how far errors in the rows and on the right carry, into what is not determined too
+        # First-order bound on errors of the rows and the right-hand side, in undetermined directions as
+        # well.
         free = np.abs(np.eye(len(scaled)) - inverse @ scaled) * bool(len(J))
         parts = np.abs(inverse) @ (size + np.abs(scaled) @ np.abs(found))
         parts += free @ (np.abs(scaled.T) @ np.abs(inverse.T @ found))
         found, parts = found * scale, parts * scale
-        # of least norm: what does nothing along v is none of it, to the last digit
+        # Least norm: remove components that have no effect along v, to the last digit.
         left = np.linalg.svd(J * scale[n:, None] * scale[:n], full_matrices=False)[0]
         left = left[:, : self.rank]
         lam, of_lam = left @ (left.T @ found[n:]), parts[n:]
-        # what a plane mechanism does not need out of its plane is rounding
+        # Multipliers that act out of the plane of a planar mechanism are rounding.
         of_lam = np.maximum(of_lam, NOISE * of_lam.max(initial=0.0))
         return (found[:n], parts[:n]), (lam, of_lam)
 
     def _inverse(self, scaled: Any, n: int) -> Any:
-        """A generalised inverse of M and J together, by what J leaves free and what it determines."""
+        """A generalised inverse of M and J together, from the null space and range of J."""
         np = self.walk.np
         if len(scaled) == n:
             return np.linalg.inv(scaled)
@@ -256,10 +294,17 @@ class Point:
         return np.block([upper, lower])
 
     def scale(self, of_M: Any, of_J: Any) -> tuple[Any, Any]:
-        """What makes rank decide and not units.
+        """Scales of x and y in `_saddle` that make the rank independent of units.
 
-        Velocities are scaled to unit inertia, and all multipliers alike, by the largest that directions and
-        lever arms make: the least norm stays theirs.
+        Velocities are scaled to unit inertia. All multipliers get one common scale, from the largest entry
+        of J, so that a least norm remains a least norm.
+
+        Args:
+            of_M: n x n, sizes of M.
+            of_J: c x n, sizes of J; no rows without constraints.
+
+        Returns:
+            n factors for velocities and c equal ones for multipliers.
         """
         np = self.walk.np
         inertia = np.diag(of_M)
@@ -269,14 +314,14 @@ class Point:
 
     @cached_property
     def inverse(self) -> Valued:
-        """M a + h for any a."""
+        """Inverse dynamics: ``M a + h``, n, for the arbitrary a."""
         np = self.walk.np
         (M, _), (h, size) = self.bodies.mass_matrix, self.bodies.bias
         return M @ self.a + h, np.abs(M) @ np.abs(self.a) + size
 
     @cached_property
     def whole(self) -> Valued:
-        """q̇ and v̇."""
+        """q̇ (nq), then v̇ (n)."""
         np = self.walk.np
         pair = zip(self.walk.rates, self.motion[0], strict=True)
         rates, sizes = (np.concatenate(both) for both in pair)
@@ -284,13 +329,15 @@ class Point:
 
     @cached_property
     def reduction(self) -> tuple[Valued, Valued]:
-        """T and v̇ at ẇ = 0: what the constraints leave to the velocities that are not kept."""
+        """T (n x m) and rest (n) of ``v̇ = T ẇ + rest``, solved from the constraints."""
         np, n = self.walk.np, len(self.v)
         (J, of_J), (bias, of_bias) = self.closed.jacobian, self.closed.bias
         kept = list(self.kept.velocities)
         others = [k for k in range(n) if k not in kept]
         measures = self.walk.numeric.sizes
         down, of_v = of_rows(J, measures), np.array(measures.velocities, float)[others]
+        # Redundant constraints leave J rank-deficient; scaling and threshold are those of the assembly, so
+        # that both find the same rank.
         inverse = np.linalg.pinv(pure(J, measures)[:, others], rcond=DEPENDENT)
         inverse = of_v[:, None] * inverse / down
         T, rest = np.zeros((n, len(kept))), np.zeros(n)
@@ -304,7 +351,7 @@ class Point:
 
     @cached_property
     def reduced(self) -> tuple[Valued, Valued]:
-        """``Tᵀ M T`` and ``Tᵀ (h + M rest)``."""
+        """Equations of motion in w: ``Tᵀ M T`` (m x m) and ``Tᵀ (h + M rest)`` (m)."""
         np = self.walk.np
         (T, of_T), (rest, of_rest) = self.reduction
         (M, of_M), (h, of_h) = self.bodies.mass_matrix, self.bodies.bias

@@ -1,4 +1,4 @@
-"""One line of the register of references: by which route a function's results are known otherwise."""
+"""One entry of the register of references: a function's results and an independent way to compute them."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ if TYPE_CHECKING:
 
 
 class After(NamedTuple):
-    """A function that is called with what another one has returned.
+    """A function that is called with results of another one, to check a property of these.
 
     Attributes:
         function: its name.
-        results: what gives each of its results, by name.
-        given: arguments that are not those of the same name, by name: `RETURNED` and a result's name.
+        results: how to compute each expected result, by name.
+        given: keys of arguments by name: `RETURNED` followed by the name of a result; others keep their
+            own.
     """
 
     function: str
@@ -26,14 +27,14 @@ class After(NamedTuple):
 
 
 class Reference(NamedTuple):
-    """How the results of a function are known otherwise.
+    """How to compute a function's results independently.
 
     Attributes:
-        route: in words.
-        results: what gives each result, by its name; a result that is not here is not compared itself.
-        given: arguments that are not those of the same name, by name.
-        function: its name, where the key in the register is another.
-        then: what else must hold of its results.
+        route: the method in words, printed into tests.
+        results: how to compute each expected result, by name; results left out are not compared.
+        given: keys of arguments that differ from the arguments' names.
+        function: its name, if the key in the register is another.
+        then: functions that check further properties of its results.
     """
 
     route: str

@@ -1,7 +1,4 @@
-"""What is known of a model's functions otherwise: the register of references.
-
-Each line says by which route, and what of a `Point` gives each result.
-"""
+"""Register of references: by which independent route the results of each emitted function are computed."""
 
 from __future__ import annotations
 
@@ -113,7 +110,7 @@ def _v_on(point: Point) -> Valued:
 
 
 def _of_slopes(name: str, key: str) -> Callable[[Point], Valued]:
-    """What gives one derivative: a property of `Derivatives`."""
+    """Return a function that reads one property of `Derivatives`; `name` becomes the key of its values."""
 
     def made(point: Point) -> Valued:
         return getattr(point.seen(Derivatives), key)  # type: ignore[no-any-return]
@@ -297,14 +294,21 @@ REFERENCES: dict[str, Reference] = {
         {"pi": _pi},
     ),
 }
-"""What is compared, and with what: a new function joins by a line here."""
+"""The functions that are compared; a new function is added by one entry here."""
 
 WHOLE = ("com", "com_velocity", "Jcom", "hg", "Ag", "Agdot_v")
-"""Results that `kinematics` has of the whole, as their own functions do."""
+"""Results that `kinematics` returns for the whole system, also returned by functions of their own."""
 
 
 def references(frames: Iterable[NamedFrame] = ()) -> dict[str, Reference]:
-    """The register, with the functions of some frames."""
+    """Return the register, extended by the functions of some frames.
+
+    Args:
+        frames: the frames whose functions are emitted.
+
+    Returns:
+        References by label; `kinematics` returns the results of all frames and of the whole system.
+    """
     found = dict(REFERENCES)
     together = {
         name: made for reference in REFERENCES.values() for name, made in reference.results.items()
@@ -319,7 +323,7 @@ def references(frames: Iterable[NamedFrame] = ()) -> dict[str, Reference]:
 
 
 def _of_frame(frame: NamedFrame) -> dict[str, Reference]:
-    """What is known of one frame."""
+    """References of the functions of one frame."""
 
     def place(key: str) -> Callable[[Point], Valued]:
         return _in_place(frame, key)
@@ -346,7 +350,7 @@ def _of_frame(frame: NamedFrame) -> dict[str, Reference]:
 
 
 def _in_place(frame: NamedFrame, key: str) -> Callable[[Point], Valued]:
-    """What gives one result of a frame: a method of `Kinematics`."""
+    """Return a function that reads one result of a frame: a method of `KinematicReference`."""
 
     def made(point: Point) -> Valued:
         return getattr(point.kinematics, key)(frame.name)  # type: ignore[no-any-return]
@@ -356,7 +360,7 @@ def _in_place(frame: NamedFrame, key: str) -> Callable[[Point], Valued]:
 
 
 def _operational(frame: NamedFrame, rows: int, key: str) -> Callable[[Point], Valued]:
-    """What gives one result of a frame in operational space: a property of `Operational`."""
+    """Return a function that reads one result in operational space: a property of `Operational`."""
 
     def made(point: Point) -> Valued:
         return getattr(Operational(point, frame.name, rows), key)  # type: ignore[no-any-return]

@@ -1,8 +1,8 @@
-"""Golden vectors: states of a model, and what its emitted functions must return there by another route.
+"""Golden vectors: states of a model, and results of its emitted functions there by an independent route.
 
-The route is `bodywise`: Newton's and Euler's equations of every body, from derivatives of where it is, in
-floats. What solves for accelerations is NumPy's. States obey what a state has to obey: quaternions have
-length 1, loops are closed and velocities allowed, and every law is defined.
+The route is Newton's and Euler's equations of every body (`bodies`), in floats, from derivatives of its
+position. NumPy solves for accelerations. States are admissible: quaternions have length 1, loops are
+closed, velocities obey the constraints, and every law is defined.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ UNTESTED = {
     "loop_equations": "called by functions that are compared",
     "constrained_slopes": "called by functions that are compared",
 }
-"""Why a function is not called by itself; of all others, that no independent route is known."""
+"""Why a function is not compared itself; for all others the reason is `NO_ROUTE`."""
 
 NO_ROUTE = "there is no independent route to what it returns"
 EMPTY = "it returns nothing here"
@@ -45,19 +45,20 @@ HANDED = "called by the function of its name without the ending"
 def vectors(
     derivation: Derived, module: Module, seed: int = 0, frames: Sequence[NamedFrame] = ()
 ) -> Vectors:
-    """Golden vectors of all functions of a module that are known by another route.
+    """Golden vectors of all functions of a module for which there is an independent route.
 
     Args:
         derivation: the model.
         module: its functions as they are to be emitted.
-        seed: of the random states.
-        frames: whose kinematics are among the functions.
+        seed: seed of the random states.
+        frames: frames whose kinematics are among the functions.
 
     Returns:
-        States with arguments q (nq), v (nv), u (nu), a (nv) in SI units, and the results there.
+        States with arguments q (nq), v (n), u (nu), a (n) in SI units, and the results there, each entry
+        with the scale that its error is to be judged on.
 
     Raises:
-        ModelError: none of the functions is known by another route, or no state is defined.
+        ModelError: no function has an independent route, or no admissible state was found.
 
     Example:
         >>> from linegraph import Model, derive
@@ -110,17 +111,17 @@ def vectors(
 
 
 class _Written:
-    """What is written of some states: arguments and results, each once."""
+    """Arguments and results at some states, each computed once."""
 
     def __init__(self, points: Sequence[Point]) -> None:
-        """Nothing is asked for yet."""
+        """Start without arguments and results."""
         self._points = points
         self.arguments: dict[str, tuple[tuple[float, ...], ...]] = {}
         self.values: dict[str, Values] = {}
         self.parametric = False
 
     def given(self, program: Program | Routine, keys: Mapping[str, str]) -> tuple[str, ...]:
-        """For each argument of a function its key."""
+        """Key of each argument of a function."""
         names = [argument.name for argument in program.arguments]
         self.parametric = self.parametric or bool({"p", CONSTANTS} & {*names})
         found = tuple(keys.get(name, name) for name in names if name != "p")
@@ -132,7 +133,7 @@ class _Written:
     def results(
         self, program: Program | Routine, made: Mapping[str, Callable[[Point], Valued]]
     ) -> tuple[str, ...]:
-        """For each result of a function its key; none where it is not compared."""
+        """Key of each result of a function; empty where it is not compared."""
         for result in program.results:
             if result.name in made:
                 source = made[result.name]
@@ -143,11 +144,12 @@ class _Written:
 def _compared(
     register: Mapping[str, Reference], module: Module
 ) -> list[tuple[str, Program | Routine, Reference]]:
-    """What is compared: label, function and reference, in emitted order."""
+    """The comparisons: label, function and reference, in emitted order."""
     found = []
     handed = {program.handed for program in module.programs}
     for program in module.programs:
-        # a function that takes the constants of prepare is called by the one without, or is a text of its own
+        # A function that takes the constants of prepare is either called by the one without or has its own
+        # text.
         name = program.name.removesuffix(PREPARED_SUFFIX)
         twin = PREPARED_SUFFIX * (name != program.name)
         for label, reference in register.items():
@@ -159,7 +161,7 @@ def _compared(
 
 
 def _asked(program: Program | Routine, reference: Reference) -> Asked:
-    """What has to be defined at a state."""
+    """The results that must be defined at a state for this comparison."""
     made = {
         r.name: reference.results[r.name] for r in program.results if r.name in reference.results
     }
@@ -200,9 +202,9 @@ def _values(
     made: Callable[[Point], Valued],
     shape: tuple[int, ...],
 ) -> Values:
-    """One result at all states, and for each entry the largest of what it is made of.
+    """One result at all states, and for each entry the scale: its largest size over the states.
 
-    At a loud state that is what it is made of there, if it is more.
+    At a loud state the scale is the size there, if that is larger.
     """
     np = points[0].walk.np
     found = [made(point) for point in points]
@@ -223,6 +225,6 @@ def _scale(sizes: Any) -> tuple[float, ...]:
 
 
 def _digits(x: float, scale: float) -> float:
-    """A number with as many digits as its scale has: beyond these it is rounding, and so no zero is."""
+    """Round a number to the digits that its scale has: further ones are rounding. Never -0.0."""
     lowest = DIGITS - 1 - math.floor(math.log10(scale))
     return round(x, lowest) + 0.0

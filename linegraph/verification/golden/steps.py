@@ -1,9 +1,9 @@
-"""Complex steps: a model a little beside a state, along i.
+"""Complex steps: derivatives of a function that calculates in floats, by calculating in complex numbers.
 
     f(x + i h d) = f(x) + i h f'(x) d + O(h^2)
 
-With h far below rounding the imaginary part is the derivative along d, to the last digit: nothing is
-subtracted. So what calculates in floats is differentiated by calculating in complex numbers.
+With h far below rounding, Im f / h is the derivative along d to the last digit, because nothing is
+subtracted [Martins et al. 2003]. A difference quotient would lose half of the digits.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from linegraph.algebra.scalar import Scalar
 
 STEP = 2.0**-100
-"""h; a power of two, by which products and quotients are exact."""
+"""The step h; a power of two, so that multiplying and dividing by it is exact."""
 
 
 class Complexes:
-    """Complex numbers as an algebra: functions of real numbers, continued.
+    """Complex numbers as an algebra: real functions, continued analytically.
 
     Args:
         arguments: the numbers of each argument, by name.
@@ -43,34 +43,49 @@ class Complexes:
         self.arguments = arguments
 
     def symbol(self, argument: str, place: int | str | None = None) -> Scalar:
-        """The number given for this place."""
+        """Look up the number given for a symbol.
+
+        Args:
+            argument: name of the argument, such as ``q``.
+            place: index or name within it; None for an argument that is one number.
+        """
         given = self.arguments[argument]
         return given if place is None else given[place]
 
     def sin(self, x: Scalar) -> Scalar:
-        """Sine."""
+        """Return the sine of x (rad)."""
         return self.function("sin", x)
 
     def cos(self, x: Scalar) -> Scalar:
-        """Cosine."""
+        """Return the cosine of x (rad)."""
         return self.function("cos", x)
 
     def sqrt(self, x: Scalar) -> Scalar:
-        """Square root."""
+        """Return the square root of x; see `function` for zero."""
         return self.function("sqrt", x)
 
     def root(self, x: Scalar) -> Scalar:
-        """Square root by itself; that of `function` may be a factor of what has a slope at zero."""
+        """Return the square root where it stands alone, and refuse an infinite slope at zero.
+
+        The square root of `function` may be a factor of a product that has a finite slope there.
+        """
         return self.power(x, Fraction(1, 2))
 
     def power(self, base: Scalar, exponent: Fraction) -> Scalar:
-        """A half-integer power: its derivative is finite where that of the root in it is not.
+        """Return a half-integer power of a number >= 0.
+
+        It is computed from the root as a whole, since its derivative may be finite where the root's is not.
+
+        Args:
+            base: a real or complex number.
+            exponent: a multiple of 1/2.
 
         Raises:
-            ModelError: there is no such power, or its derivative is not finite.
+            ModelError: the power or its derivative is not finite.
         """
         z, count = complex(base), int(2 * exponent)
         root = of_numbers("sqrt", z.real)
+        # With n twice the exponent, the derivative n / 2 root^(n - 2) is finite at zero from n = 2 on.
         least = 2 if z.imag else 0
         if root == 0 and count < least:
             raise ModelError(
@@ -80,16 +95,22 @@ class Complexes:
         return complex(root**count, slope * z.imag) if isinstance(base, complex) else root**count
 
     def function(self, name: str, *x: Scalar) -> Scalar:
-        """Any function of `functions.ARITY`; at a kink one side of it.
+        """Return any function of `functions.ARITY`; at a kink its derivative from one side.
 
-        Of abs it is that of positive numbers, of min and max that of their first complex argument.
+        abs has the slope of positive numbers at 0; min and max of equal numbers have that of the first
+        complex one.
+
+        Args:
+            name: the function's name.
+            x: its arguments.
 
         Raises:
-            ModelError: the function has no finite value there.
+            ModelError: the function or its derivative is not finite there.
         """
         if not any(isinstance(part, complex) for part in x):
             return of_numbers(name, *x)
         z = [complex(part) for part in x]
+        # The real part is that of the other routes; cmath may differ from it in the last digit.
         real = of_numbers(name, *(part.real for part in z))
         if name in _OWN:
             return _OWN[name](*(x if name in ("min", "max") else z))
@@ -121,20 +142,24 @@ _OWN: dict[str, Callable[..., complex]] = {
     "max": _larger,
     "atan2": _angle,
 }
-"""What has no continuation in `cmath`."""
+"""Functions that `cmath` does not continue analytically."""
 
 _STEEP = {"asin": 1.0, "acos": 1.0}
-"""Where, up to its sign, the slope of a function is infinite; a complex step makes a large number of it."""
+"""Magnitude of the argument at which a slope is infinite.
+
+A complex step would return a large number there.
+"""
 
 
 class Beside(NamedTuple):
-    """A state beside the real one; what is None is as it is there.
+    """A complex state beside the real one; entries that are None are as there.
 
     Attributes:
-        q, v: coordinates and velocities.
-        u: inputs.
-        t: the time.
-        parameters: values in place of the model's; what is derived from them is so again.
+        q: nq coordinates.
+        v: n velocities.
+        u: nu inputs.
+        t: the time (s).
+        parameters: values in place of the model's; parameters derived from them follow.
     """
 
     q: Sequence[Scalar]
@@ -145,12 +170,15 @@ class Beside(NamedTuple):
 
 
 def stepped(numeric: Numeric, beside: Beside, *, held: bool = False) -> Numeric:
-    """The numeric reference for a state beside the real one.
+    """Numeric reference at a complex state, for complex inputs, time and parameters.
 
     Args:
         numeric: the model in floats, at the real state's time and inputs.
         beside: the other state.
-        held: whether unknowns of algebraic loops stay what they are at the real state.
+        held: whether unknowns of algebraic loops keep their values at the real state.
+
+    Returns:
+        The model over `Complexes`.
     """
     q, v, u, t, parameters = beside
     given = numeric.algebra.arguments
@@ -176,7 +204,7 @@ def stepped(numeric: Numeric, beside: Beside, *, held: bool = False) -> Numeric:
 def _loop(
     numeric: Numeric, beside: Numeric, q: Sequence[Scalar], v: Sequence[Scalar], *, held: bool
 ) -> list[complex]:
-    """The unknowns of an algebraic loop beside those of the real state: one step of Newton's, or none."""
+    """Unknowns of an algebraic loop at the complex state: one Newton step, or none if held."""
     import numpy as np
 
     at = numeric.exchange([x.real for x in q], [x.real for x in v])
