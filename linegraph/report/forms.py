@@ -241,9 +241,7 @@ class Forms:
                     "The velocities of mechanics are the rates of the coordinates: N is the identity."
                 )
             ]
-
-        f = self._functions
-        rates = f.coordinate_rates
+        rates = self._functions.coordinate_rates
         rows = [
             EquationRow(Name(n.letter, n.subs, n.dots + 1), self._nodes(x))
             for n, x in zip(subject.symbols(subject.q_names), rates, strict=True)
