@@ -109,7 +109,7 @@ def test_zeros_along_coordinate_axes_are_no_sums(place: int) -> None:
     axis = np.eye(6)[place]
     along = (place, None) if place < 3 else (None, place - 3)
     s, u = tuple(axis[:3].tolist()), tuple(axis[3:].tolist())
-    for share in np.linspace(0.5, 2, 20).tolist():
+    for share in np.linspace(0.5, 2, 60).tolist():
         body = rigid(
             Moments(
                 share * CLOUD.mass,
