@@ -24,9 +24,9 @@ from linegraph.components.constraints import (
     Prescribed,
     ReactionRow,
 )
-from linegraph.dynamics.chords import Chords, equations
+from linegraph.dynamics.chords import Chords
 from linegraph.ir.program import Quantity
-from linegraph.kinematics.arms import arms
+from linegraph.kinematics.tree_state import TreeState
 
 NEEDED: dict[str, dict[str, Any]] = {
     "rod": {"length": 0.6},
@@ -284,9 +284,9 @@ def chords(name: str, q: Any, v: Any, t: float = TIME) -> Chords:
     kind, options = VARIANTS[name]
     model = modelled(ARM)
     getattr(model, kind)("limit", between=("b1", "b3"), **options)
-    tree, floats = walked(model, t=t)
-    assert len(equations(tree)) == len(made(name).equations())
-    return Chords(tree, floats, arms(tree, floats, q, v), {})
+    found = Chords(TreeState(walked(model, t=t), q, v))
+    assert len(found.equations) == len(made(name).equations())
+    return found
 
 
 def difference(function: Any) -> Any:
@@ -307,9 +307,9 @@ def test_j_is_the_derivative_of_its_position_and_gamma_of_its_rate(name: str, se
     near(J[:count], np.array(by_q).T.reshape(count, 5), 1e-10)
     # with v constant the rate J v - b of every row, of position or not, changes by -γ
     along = difference(lambda s: chords(name, q + s * v, v, TIME + s).position())
-    near(here.rates(v)[:count], along, 1e-10)
-    near(np.subtract(here.rates(v), chords(name, q, 0 * v).rates(0 * v)), J @ v)
-    change = difference(lambda s: chords(name, q + s * v, v, TIME + s).rates(v))
+    near(here.rates()[:count], along, 1e-10)
+    near(np.subtract(here.rates(), chords(name, q, 0 * v).rates()), J @ v)
+    change = difference(lambda s: chords(name, q + s * v, v, TIME + s).rates())
     near(here.bias(), -change, 1e-9)
 
 

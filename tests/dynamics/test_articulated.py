@@ -16,7 +16,7 @@ import linegraph as lg
 from linegraph.dynamics.applied_forces import Applied
 from linegraph.dynamics.articulated import Articulated, Freed, forward_dynamics, rigid
 from linegraph.dynamics.composite_bias import bias_beside_mass
-from linegraph.kinematics.arms import arms
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.spatial.inertia import Moments
 from linegraph.spatial.rotation import Full, Rotation
 from linegraph.spatial.vector import ZERO
@@ -139,8 +139,7 @@ def block_on_a_slope() -> lg.Model:
 def accelerations(
     model: lg.Model, q: Any, v: Any, efforts: Any, armatures: Any = None
 ) -> tuple[Any, Any]:
-    tree, floats = walked(model)
-    return forward_dynamics(tree, floats, arms(tree, floats, q, v), efforts, armatures)
+    return forward_dynamics(TreeState(walked(model), q, v), efforts, armatures)
 
 
 def test_a_block_on_a_slope_with_a_swinging_bar() -> None:
@@ -174,9 +173,9 @@ def test_a_rotor_behind_a_gear_adds_to_its_own_pivot_and_to_nothing_else() -> No
 
 def test_oblique_joints_accelerate_as_mass_matrix_and_bias_say() -> None:
     q, v = LIMB_STATE
-    tree, floats = walked(modelled(LIMB))
-    idle = Applied([(ZERO, ZERO)] * len(tree.links), [0] * 7)
-    h = bias_beside_mass(tree, floats, arms(tree, floats, q, v), idle)
+    state = TreeState(walked(modelled(LIMB)), q, v)
+    idle = Applied([(ZERO, ZERO)] * len(state.tree.links), [0] * 7)
+    h = bias_beside_mass(state, idle)
     efforts = np.linspace(2, -1, 7)
     found, _ = accelerations(modelled(LIMB), q, v, efforts)
     near(found, np.linalg.solve(mass_matrix(LIMB, q), efforts - h), 1e-12)
@@ -192,9 +191,9 @@ def test_random_trees_accelerate_as_newton_and_euler_say(kinds: str, seed: int) 
     # rounding grows by the condition of M, lengths and angles in units of their own
     scale = 1 / np.sqrt(np.diag(M))
     tolerance = 1e-14 * np.linalg.cond(M * np.outer(scale, scale)) + 1e-13
-    found, pivots = forward_dynamics(*here.over_floats(), efforts.tolist())
+    found, pivots = forward_dynamics(here.over_floats(), efforts.tolist())
     near(found, expected, tolerance)
     assert np.prod(pivots) == pytest.approx(np.linalg.det(M), rel=tolerance)
     # over nodes products with zero are left out, and so are sums that vanish
-    over_nodes = here.over_dag(lambda *at: forward_dynamics(*at, efforts.tolist()).unknowns)
+    over_nodes = here.over_dag(lambda state: forward_dynamics(state, efforts.tolist()).unknowns)
     near(over_nodes, expected, tolerance)

@@ -16,7 +16,7 @@ from support.rigid_motion import TINY, moving
 import linegraph as lg
 from linegraph.dynamics.applied_forces import Applied
 from linegraph.dynamics.composite_bias import bias_beside_mass
-from linegraph.kinematics.arms import arms
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.spatial.vector import ZERO
 
 
@@ -24,14 +24,13 @@ def idle(tree: Any) -> Applied:
     return Applied([(ZERO, ZERO)] * len(tree.links), [0] * len(tree.velocities))
 
 
-def resting(tree: Any, algebra: Any, crossed: Any) -> Any:
+def resting(state: TreeState) -> Any:
     """The bias where nothing acts but gravity."""
-    return bias_beside_mass(tree, algebra, crossed, idle(tree))
+    return bias_beside_mass(state, idle(state.tree))
 
 
-def bias(model: lg.Model, q: Any, v: Any, acting: Applied | None = None, **known: Any) -> Any:
-    tree, floats = walked(model, **known)
-    return bias_beside_mass(tree, floats, arms(tree, floats, q, v), acting or idle(tree))
+def bias(model: lg.Model, q: Any, v: Any, **known: Any) -> Any:
+    return resting(TreeState(walked(model, **known), q, v))
 
 
 M, L, G = 1.7, 0.6, 9.81
@@ -84,7 +83,7 @@ def test_oblique_joints_and_a_fork_take_what_newton_and_euler_say_of_each_body()
 def test_random_trees_have_the_bias_of_single_bodies(kinds: str, seed: int) -> None:
     here = drawn(seed, kinds)
     expected = oracle.bias(here.spec, here.q, here.v)
-    near(resting(*here.over_floats()), expected)
+    near(resting(here.over_floats()), expected)
     # over nodes a joint is seen from its far side where its directions change on the near one
     near(here.over_dag(resting), expected)
 
@@ -92,8 +91,8 @@ def test_random_trees_have_the_bias_of_single_bodies(kinds: str, seed: int) -> N
 def test_forces_and_efforts_that_act_are_taken_off() -> None:
     """A force at b4's origin and a torque, given in its working axes, by their virtual work."""
     q, v = LIMB_STATE
-    tree, floats = walked(modelled(LIMB))
-    crossed = arms(tree, floats, q, v)
+    tree = walked(modelled(LIMB))
+    state = TreeState(tree, q, v)
     link, seat = tree.bodies["b4"]
     turn = poses(LIMB, q)[4][:3, :3] @ np.array(seat.rotation, float).T
     force, torque = np.array([2.0, -3.0, 1.0]), np.array([0.5, 0.7, -0.4])
@@ -103,9 +102,9 @@ def test_forces_and_efforts_that_act_are_taken_off() -> None:
     acting = idle(tree)
     acting.wrenches[link] = (tuple(force), tuple(torque))
     acting.efforts[:] = efforts.tolist()
-    found = np.array(bias_beside_mass(tree, floats, crossed, acting))
+    found = np.array(bias_beside_mass(state, acting))
     work = (turn @ force) @ J[:3] + (turn @ torque) @ J[3:]
-    expected = np.array(bias_beside_mass(tree, floats, crossed, idle(tree))) - work - efforts
+    expected = np.array(resting(state)) - work - efforts
     near(found, expected)
 
 

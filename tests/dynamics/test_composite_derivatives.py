@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,15 +16,14 @@ from support.rigid_motion import TINY
 import linegraph as lg
 from linegraph.dynamics.composite_derivatives import has_slopes, slopes
 from linegraph.ir.dag import Dag
-from linegraph.kinematics.arms import arms
+from linegraph.kinematics.tree_state import TreeState
 
 G = 9.81
 L1, C1, C2, M1, M2, J1, J2 = 0.5, 0.2, 0.3, 1.5, 0.8, 0.02, 0.01
 
 
 def derivatives(model: lg.Model, q: Any, v: Any, a: Any) -> tuple[Any, Any, Any]:
-    tree, floats = walked(model)
-    found = slopes(tree, floats, arms(tree, floats, q, v), a)  # type: ignore[arg-type]
+    found = slopes(TreeState(walked(model), q, v), a)
     by_change, by_velocity, by_acceleration = (np.array(rows, float) for rows in found)
     return by_change, by_velocity, by_acceleration
 
@@ -103,9 +103,8 @@ def test_a_point_on_a_crane_moves_as_its_polar_coordinates_do() -> None:
 def test_random_trees_have_the_derivatives_of_newton_and_euler(kinds: str, seed: int) -> None:
     """A change of a free joint is a shift and a turn along its head's axes."""
     here = steady(seed, kinds)
-    tree, floats, crossed = here.over_floats()
     spec, q, v, a = here.spec, here.q, here.v, here.a
-    by_change, by_velocity, by_acceleration = slopes(tree, floats, crossed, a)  # type: ignore[arg-type]
+    by_change, by_velocity, by_acceleration = slopes(here.over_floats(), a)
     expected = differences(here, lambda x: oracle.inverse_dynamics(spec, x, v, a))
     near(by_change, expected, 1e-10)
     units = np.eye(spec.nv)
@@ -124,10 +123,10 @@ def steady(seed: int, kinds: str) -> Drawn:
 
 def over_nodes(model: lg.Model) -> bool:
     dag = Dag()
-    tree, _ = walked(model)
+    tree = walked(model)
     q = [dag.symbol("q", k) for k in range(len(tree.positions))]
     v = [dag.symbol("v", k) for k in range(len(tree.velocities))]
-    return has_slopes(tree, arms(tree, dag, q, v))
+    return has_slopes(TreeState(replace(tree, algebra=dag), q, v))
 
 
 @pytest.mark.parametrize(

@@ -77,7 +77,7 @@ def servo() -> lg.Model:
 
 def parts() -> tuple[Any, Any]:
     model = servo()
-    return model.system(), walked(model)[0].network
+    return model.system(), walked(model).network
 
 
 def test_edges_of_networks_deliver_what_they_do_not_take_in() -> None:
@@ -119,7 +119,7 @@ def test_a_domain_of_the_models_own_gives_its_own_units() -> None:
     model.domain("acoustic", across=pressure, through=flow)
     for name, law in (("wall", "x = 2*y"), ("voice", "y = 3")):
         model.element(name, ("in", "ground"), "acoustic", law=law)
-    network = walked(model)[0].network
+    network = walked(model).network
     (across, _), (through, _) = (network_quantities(model.system(), network, k) for k in (0, 1))
     assert (across.unit, across.about) == ("Pa", "pressure across wall")
     assert (through.unit, through.about) == ("m^3/s", "flow through wall")

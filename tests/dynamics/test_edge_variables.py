@@ -29,7 +29,7 @@ G = 9.81
 def test_joints_transmit_what_the_bodies_beyond_them_need(kinds: str, seed: int) -> None:
     here = drawn(seed, kinds)
     spec, q, v, a = here.spec, here.q, here.v, here.a
-    found = scheme(here.model, q, v, a, u=[0] * spec.nv).inverse
+    found = scheme(here.model, q, v, a, u=[0] * spec.nv)
     expected = oracle.reactions(spec, q, v, a)
     motions = oracle.body_motions(spec, q, v)
     for joint in spec.joints:
@@ -47,7 +47,7 @@ def test_inertia_edges_take_what_joints_deliver(kinds: str, seed: int) -> None:
     """Through times across sums up to zero; joints deliver τ v, inertia edges take the rate of energy."""
     here = drawn(seed, kinds)
     spec, q, v, a = here.spec, here.q, here.v, here.a
-    edges = scheme(here.model, q, v, a, u=[0] * spec.nv).inverse.edges()
+    edges = scheme(here.model, q, v, a, u=[0] * spec.nv).edges()
     found, sums = powers(edges)
     size = 1 + max(map(abs, found.values()))
     assert max(map(abs, sums)) < 1e-13 * size
@@ -69,7 +69,7 @@ def test_inertia_edges_take_what_joints_deliver(kinds: str, seed: int) -> None:
 def test_terminals_and_mass_centres_move_as_their_poses() -> None:
     q, v = LIMB_STATE
     model = modelled(LIMB)
-    found = scheme(model, q, v, [0] * 7).inverse
+    found = scheme(model, q, v, [0] * 7)
     for name, k, place in (("b4", 4, (0, 0, 0)), ("b3.mass_center", 3, LIMB[3].center)):
         here = moving(lambda t, k=k: poses(LIMB, q + t * v)[k])  # type: ignore[misc]
         frame = found.terminal(name)
@@ -90,7 +90,7 @@ def test_across_variables_are_head_less_tail() -> None:
     model.spring("coil", between=(eye, "b4"), stiffness=1.0)
     model.damper("brake", joint="j0", damping=1.0)
     model.load("push", at="b2", force=(1, 0, 0))
-    found = scheme(model, q, v).inverse.across()
+    found = scheme(model, q, v).across()
     bodies = [moving(lambda t, k=k: poses(LIMB, q + t * v)[k]) for k in range(5)]  # type: ignore[misc]
     near(found["coil"], [bodies[4].linear, bodies[4].angular])
     near(found["push"], [bodies[2].linear, bodies[2].angular])
@@ -121,7 +121,7 @@ def beam() -> lg.Model:
 def test_a_hinge_carries_what_springs_loads_and_weight_leave() -> None:
     """Turning at 1.2 rad/s: what the motion takes, less 60 N of the stay, the push and the weight."""
     w, spin = 1.2, -0.4
-    found = scheme(beam(), [0.0], [w], [spin], u=[0.0]).inverse
+    found = scheme(beam(), [0.0], [w], [spin], u=[0.0])
     stay, push, weight = np.array([0, 60.0, 0]), np.array([5.0, -2, 1]), np.array([0, -3 * G, 0])
     needed = 3.0 * np.array([-(w**2) * 1.0, spin * 1.0, 0])
     force = needed - stay - push - weight
@@ -138,7 +138,7 @@ def test_a_hinge_carries_what_springs_loads_and_weight_leave() -> None:
 
 def test_what_a_body_asks_for_is_an_edge_from_ground() -> None:
     w, spin = 1.2, -0.4
-    edge = scheme(beam(), [0.0], [w], [spin]).inverse.inertia("bar")
+    edge = scheme(beam(), [0.0], [w], [spin]).inertia("bar")
     near(edge.through.force, [3.0 * w**2, -3.0 * (spin + G), 0])
     near(edge.through.torque, [0, 0, -0.25 * spin])
     near(edge.linear, [0, w, 0])
@@ -160,7 +160,7 @@ def test_a_body_with_a_first_moment_has_the_inertia_edge_of_its_centre() -> None
         model.free("pose", between=("ground", body))
         q, v = [0, 0, 0, 0.1, 0.5, -0.5, 0.7], [0.3, 0.4, -0.2, 1.1, -0.7, 0.9]
         a = [0.2, 0.1, -0.3, 0.8, -1.2, 0.5]
-        edges.append(scheme(model, q, v, a).inverse.inertia("body"))
+        edges.append(scheme(model, q, v, a).inertia("body"))
     one, two = edges
     near(two.through, one.through)
     assert np.abs(one.through.torque).max() > 0.1
@@ -171,7 +171,7 @@ def test_an_edge_between_moving_points_has_a_lever_on_its_tail() -> None:
     q, v = LIMB_STATE
     model = modelled(LIMB)
     model.spring("coil", between=("b2", "b4"), stiffness=3.0, length=0.1)
-    found = scheme(model, q, v, [0.1] * 7, u=[0] * 7).inverse
+    found = scheme(model, q, v, [0.1] * 7, u=[0] * 7)
     edge = found.elements["coil"]
     at = poses(LIMB, q)
     line = at[4][:3, 3] - at[2][:3, 3]
@@ -192,7 +192,7 @@ def test_the_tension_of_an_element_goes_with_its_length() -> None:
     model = beam()
     (stay,) = (e for e in model.system().elements if e.name == "stay")
     (brake,) = (e for e in model.system().elements if e.name == "brake")
-    found = scheme(model, [0.3], [1.2]).inverse
+    found = scheme(model, [0.3], [1.2])
     tip = 2 * np.array([math.cos(0.3), math.sin(0.3)])
     length = float(np.hypot(*(tip - [2.0, 1.5])))
     near(found.tension(stay), [length, 40.0 * length])  # type: ignore[arg-type]
@@ -206,7 +206,7 @@ def test_reactions_are_seen_in_the_chosen_axes(axes: str, lean: float) -> None:
     bob = model.body("bob", mass=2.0, mass_center=(0.5, 0, 0))
     model.revolute("hinge", between=(nail, bob))
     model.formulation(reactions=axes)
-    force, torque = scheme(model, [0.4], [0.0], [0.0], u=[0.0]).inverse.reaction("hinge")
+    force, torque = scheme(model, [0.4], [0.0], [0.0], u=[0.0]).reaction("hinge")
     weight = 2.0 * G
     near(force, [weight * math.sin(lean), weight * math.cos(lean), 0])
     near(torque, [0, 0, weight * 0.5 * math.cos(1.1)])
@@ -221,11 +221,11 @@ def test_a_prescribed_joint_tells_what_drives_it() -> None:
     model.prismatic("rail", between=("ground", cart), axis=(1, 0, 0), motion="0.2*sin(3*t)")
     model.revolute("swing", between=(cart, bar))
     t, angle, w, spin = 0.4, 0.5, 1.7, -2.2
-    found = scheme(model, [angle], [w], [spin], t=t, u=[0.0]).inverse
+    found = scheme(model, [angle], [w], [spin], t=t, u=[0.0])
     pull = -1.8 * math.sin(3 * t)
     force = (m1 + m2) * pull + m2 * c * (spin * math.cos(angle) - w**2 * math.sin(angle))
     assert found.drives() == {"rail": pytest.approx(force, abs=1e-13)}
-    assert scheme(beam(), [0.1], [0.0], [0.0], u=[0.0]).inverse.drives() == {}
+    assert scheme(beam(), [0.1], [0.0], [0.0], u=[0.0]).drives() == {}
 
 
 # a loop: every pin of a four-bar linkage, from the motions of its bars
@@ -285,7 +285,7 @@ def moving_linkage(efforts: Any) -> tuple[InverseScheme, Any, Any]:
     a, multipliers = found[:3], found[3:]
     forces, left = pins(q, v, a, efforts)
     assert left < 1e-12
-    return scheme(model, q, v, a, multipliers.tolist(), u=efforts).inverse, forces, (q, v)
+    return scheme(model, q, v, a, multipliers.tolist(), u=efforts), forces, (q, v)
 
 
 def test_all_pins_of_a_linkage_carry_what_its_bars_balance_with() -> None:
@@ -313,7 +313,7 @@ def test_elements_in_a_chord_have_their_own_edge() -> None:
     model = four_bar()
     model.damper("brake", joint="c", damping=0.4)
     q, v = closed(0.7), [0.9, -1.3, 0.6]
-    found = scheme(model, q, v, [0, 0, 0], [0] * 5, u=[0, 0, 0, 1.1]).inverse
+    found = scheme(model, q, v, [0, 0, 0], [0] * 5, u=[0, 0, 0, 1.1])
     rate = v[2] - v[0] - v[1]
     near(found.elements["brake"].through.torque, [0, 0, -0.4 * rate])
     near(found.joints["c"].torque, [0, 0, 1.1])
@@ -329,17 +329,17 @@ def test_a_weld_that_closes_a_loop_holds_with_its_multipliers() -> None:
     model.fixed("weld", between=ends)
     model.formulation(tree=("hinge",))
     holding = 3.0 * G
-    found = scheme(model, [0], [0], [0], [0, 0, 0, 0, 0, holding], u=[0]).inverse
+    found = scheme(model, [0], [0], [0], [0, 0, 0, 0, 0, holding], u=[0])
     near(found.joints["weld"], [[0, 0, 0], [0, 0, holding]])
     near(found.joints["hinge"], [[0, 3.0 * G, 0], [0, 0, 0]])
-    pushed = scheme(model, [0], [0], [0], [1, 2, 3, 4, 5, 6], u=[0]).inverse
+    pushed = scheme(model, [0], [0], [0], [1, 2, 3, 4, 5, 6], u=[0])
     near(pushed.joints["weld"], [[1, 2, 3], [4, 5, 6]])
 
 
 def test_rigid_arms_carry_what_their_terminals_exert() -> None:
     """From the mass centre to a terminal: the joint there, about the terminal, and turned round."""
     q, v = LIMB_STATE
-    found = scheme(modelled(LIMB), q, v, [0.1] * 7, u=[0] * 7).inverse
+    found = scheme(modelled(LIMB), q, v, [0.1] * 7, u=[0] * 7)
     edges = found.edges()
     # j1 slides from b0 to b1: its force is at the head and has a moment about the tail
     force, torque = (np.array(x) for x in found.joints["j1"])
@@ -350,5 +350,5 @@ def test_rigid_arms_carry_what_their_terminals_exert() -> None:
 
 
 def test_without_networks_there_are_no_variables_of_them() -> None:
-    found = scheme(beam(), [0.0], [0.0]).inverse
+    found = scheme(beam(), [0.0], [0.0])
     assert (found.network(), found.gains(), found.variables()) == ({}, {}, {})

@@ -23,7 +23,7 @@ from linegraph.dynamics.momentum import (
     scaled,
     shared,
 )
-from linegraph.kinematics.arms import arms
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.kinematics.twists import Column, Outlook, matrix, total
 from linegraph.spatial.vector import ZERO
 
@@ -54,8 +54,7 @@ CASES: dict[str, tuple[tuple[Part, ...], Any, Any, Any, str]] = {
 
 
 def outlook(model: lg.Model, q: Any, v: Any, **known: Any) -> Outlook:
-    tree, floats = walked(model, **known)
-    return Outlook(tree, floats, arms(tree, floats, q, v))
+    return Outlook(TreeState(walked(model, **known), q, v))
 
 
 def case(name: str, shift: float = 0.0) -> tuple[Outlook, Outlook, Any]:
@@ -65,8 +64,7 @@ def case(name: str, shift: float = 0.0) -> tuple[Outlook, Outlook, Any]:
     model.formulation(coordinates=coordinates)
     view = outlook(model, q + shift * v, v)
     mass = sum(part.mass for part in parts)
-    shares = Outlook(shared(view.tree, mass), view.algebra, [])
-    shares.crossed = arms(shares.tree, view.algebra, q + shift * v, v)
+    shares = Outlook(TreeState(shared(view.tree, mass), q + shift * v, v))
     return view, shares, mass
 
 
@@ -136,7 +134,7 @@ def test_momentum_changes_by_what_ground_and_weight_exert(kinds: str, seed: int)
     """A v' + A'v is the weight and the reactions of all joints on ground, with their moments about c."""
     here = drawn(seed, kinds)
     spec, q, v, a = here.spec, here.q, here.v, here.a
-    view = Outlook(*here.over_floats())
+    view = Outlook(here.over_floats())
     mass = sum(body.mass for body in spec.bodies)
     c = np.array(center(view, ZERO)) / mass
     A = np.array(matrix(momentum_columns(view, tuple(c)), spec.nv), float)

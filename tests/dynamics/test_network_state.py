@@ -21,6 +21,7 @@ from linegraph.dynamics.network_state import (
 from linegraph.errors import ModelError
 from linegraph.ir.dag import Dag
 from linegraph.kinematics.tree import kinematic_tree
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.networks.network import RATE
 
 if TYPE_CHECKING:
@@ -36,13 +37,11 @@ def exchange(
     names: Any = None,
     **arguments: Any,
 ) -> Exchange:
-    """A model's network over floats; v holds rates of joints, then states."""
-    known = parameters or {}
-    tree, floats = walked(model, known, **arguments)
+    """A model's network over floats, joints at zero; v holds their rates, then states."""
+    tree = walked(model, parameters, **arguments)
     assert tree.network is not None
-    return Exchange(
-        tree.network, tree, floats, known, v, names or {}, motion or unmoved, acceleration
-    )
+    state = TreeState(tree, [0.0] * len(tree.positions), v)
+    return Exchange(tree.network, state, names or {}, motion or unmoved, acceleration)
 
 
 def unmoved(port: str) -> EdgeMotion:
@@ -278,7 +277,7 @@ def test_an_input_whose_derivative_counts_is_an_input_with_it() -> None:
     model.voltage_source("supply", between=("plus", "ground"), voltage="U")
     model.capacitor("C1", between=("plus", "ground"), capacitance=CAPACITANCE)
     found = exchange(model, [], u=[5.0, 0.8])
-    assert [q.name for q in found.tree.inputs] == ["U", "U_rate"]
+    assert [q.name for q in found.state.tree.inputs] == ["U", "U_rate"]
     assert found.through("C1") == pytest.approx(CAPACITANCE * 0.8)
 
 
@@ -316,7 +315,7 @@ def test_over_nodes_the_unknowns_of_a_loop_are_symbols() -> None:
     model = rectifier()
     tree = kinematic_tree(model.system(), formulated(model), dag, {})
     assert tree.network is not None
-    found = Exchange(tree.network, tree, dag, {}, [], {}, unmoved)
+    found = Exchange(tree.network, TreeState(tree, [], []), {}, unmoved)
     assert found.across("D1") is dag.symbol("loop", 0)
 
 

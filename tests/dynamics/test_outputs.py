@@ -38,8 +38,7 @@ def seen(
     **given: Any,
 ) -> Any:
     """The outputs' values, and whether they take accelerations; `known` are multipliers."""
-    here = scheme(model, q, v, a, *known, **{"u": [0.0], **given})
-    return observed(here.system, here.tree, here.floats, {}, here.chords, here.state, here.inverse)
+    return observed(scheme(model, q, v, a, *known, **{"u": [0.0], **given}))
 
 
 def value(text: str, **known: Any) -> Any:
@@ -122,7 +121,7 @@ def test_an_input_that_prescribes_a_motion_may_be_named() -> None:
     model.prismatic(
         "slide", ("ground", model.body("cart", mass=1.0)), axis=(1, 0, 0), motion="input"
     )
-    names = [x.name for x in scheme(model, [], [], [], u=[0, 0, 0]).tree.inputs]
+    names = [x.name for x in walked(model, u=[0, 0, 0]).inputs]
     assert names == ["slide", "slide_rate", "slide_acceleration"]
     model.output("y", "slide_acceleration + 10*slide")
     (found,), _ = seen(model, [], [], [], u=[0.7, 0.2, 3.0])
@@ -135,7 +134,7 @@ def test_an_effort_has_the_name_of_a_coordinate_or_of_nothing() -> None:
     assert found == ANGLE
     model = lg.Model("ball")
     model.spherical("ball", between=("ground", model.body("body", mass=1.0, inertia=(1, 1, 1))))
-    torque, *_ = (x.name for x in walked(model)[0].inputs)
+    torque, *_ = (x.name for x in walked(model).inputs)
     model.output("y", torque)
     with pytest.raises(ModelError, match=torque):
         seen(model, [0, 0, 0, 1], [0, 0, 0], [0, 0, 0], u=[1.0, 2.0, 3.0])

@@ -12,16 +12,13 @@ from support.spec_models import model_of
 from systems import random_trees as trees
 
 from linegraph.ir.dag import Dag
-from linegraph.kinematics.arms import arms
 from linegraph.kinematics.tree import kinematic_tree
+from linegraph.kinematics.tree_state import TreeState
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     import linegraph as lg
-    from linegraph.algebra.protocol import Floats
-    from linegraph.kinematics.arms import Arm
-    from linegraph.kinematics.links import KinematicTree
 
 KINDS: dict[str, tuple[str, ...]] = {
     "revolute": ("revolute",),
@@ -48,18 +45,17 @@ class Drawn(NamedTuple):
     v: Any
     a: Any
 
-    def over_floats(self) -> tuple[KinematicTree, Floats, list[Arm]]:
-        """The links and joints at the state."""
-        tree, floats = walked(self.model)
-        return tree, floats, arms(tree, floats, self.q.tolist(), self.v.tolist())
+    def over_floats(self) -> TreeState:
+        """The links at the state."""
+        return TreeState(walked(self.model), self.q.tolist(), self.v.tolist())
 
-    def over_dag(self, function: Callable[..., Sequence[Any]]) -> Any:
-        """The numbers of what a function makes of links, a DAG and joints at a state of symbols."""
+    def over_dag(self, function: Callable[[TreeState], Sequence[Any]]) -> Any:
+        """The numbers of what a function makes of the links at a state of symbols."""
         dag = Dag()
         tree = kinematic_tree(self.model.system(), formulated(self.model), dag, {})
         q = [dag.symbol("q", k) for k in range(len(self.q))]
         v = [dag.symbol("v", k) for k in range(len(self.v))]
-        found = function(tree, dag, arms(tree, dag, q, v))
+        found = function(TreeState(tree, q, v))
         return np.array(values(list(found), {"q": self.q, "v": self.v}), float)
 
 
