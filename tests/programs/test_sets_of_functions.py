@@ -210,6 +210,29 @@ def test_what_is_prepared_has_a_twin_that_takes_the_constants(name: str) -> None
             assert [r.shape for r in twin.results] == [r.shape for r in programs[function].results]
 
 
+def test_all_but_what_is_read_now_and_then_is_prepared() -> None:
+    every = set[str]().union(*(names(whole(name)) for name in MODELS))
+    assert {function for function in every if not is_prepared(function)} == {
+        "energy",
+        "across",
+        "reactions_at",
+        "reactions",
+        "drives",
+        "power",
+        "outputs",
+        "inverse_dynamics_parameter_derivatives",
+        "forward_dynamics_parameter_derivatives",
+        "inertial_parameters",
+    }
+
+
+def test_a_hole_in_the_register_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a function calls is made by some key; without that one there is no end to the search."""
+    monkeypatch.setitem(PROGRAMS, "forward_dynamics", lambda _: ())
+    with pytest.raises(LookupError, match="makes forward_dynamics"):
+        asked("arm", "power")
+
+
 # which know no constraint
 
 STATE = {
