@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from linegraph.components.body import orientation
 from linegraph.components.validation import finite, rotation_matrix, triple, vector
+from linegraph.errors import ModelError
 from linegraph.spatial.placement import Placement
 from linegraph.spatial.rotation import snapped
 from linegraph.spatial.vector import ZERO
@@ -117,10 +118,17 @@ class BodyHandle:
             ``"body.frame"``, to be used in `between`.
 
         Raises:
-            ModelError: the name is taken, a number is not finite, or the orientation is none.
+            ModelError: the name is taken, a number is not finite, the orientation is given twice or is none,
+                or there is an angle without its axis.
         """
         who = f'frame "{self.name}.{name}"'
         finite((angle,), who)
+        ways = {"rpy": rpy, "axis": axis, "rotation": rotation}
+        given = [way for way, value in ways.items() if value is not None]
+        if len(given) > 1:
+            raise ModelError(who, f"give {' or '.join(given)}, not both")
+        if axis is None and angle != 0:
+            raise ModelError(who, "has an angle but no axis to turn about; give both, or rpy")
         if rotation is None:
             matrix = orientation(who, triple(rpy, who), triple(axis, who), angle)
         else:

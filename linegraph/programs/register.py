@@ -147,6 +147,8 @@ def _made(functions: Workspace, keys: Iterable[str]) -> tuple[dict[str, Made], t
             if missing & {program.name for program in found}:
                 made[key] = found
                 break
+        else:
+            raise LookupError(f"no function of the register makes {', '.join(sorted(missing))}")
 
 
 def _mass_matrix(f: Workspace) -> Program:

@@ -23,7 +23,7 @@ from linegraph import ModelError, derive
 from linegraph.emission.emit import render
 from linegraph.programs.loop_derivatives import free_changes
 from linegraph.programs.loops import independent
-from linegraph.programs.workspace import Functions
+from linegraph.programs.workspace import Workspace
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -53,7 +53,7 @@ def independent_rows(J: Array) -> Array:
 def reduced(point: Point, free: list[int], own: list[int], holonomic: int) -> Array:
     """(A B) for changes of position at places `free` and velocities at places `own`."""
     still = point.still
-    J = np.real(still.stacked(still.chords.jacobian())[0])
+    J = np.real(still.stacked(still.here.jacobian)[0])
     rows, n, m, k = independent_rows(J), len(point.v), len(free), len(own)
     keeping = independent_rows(J[:holonomic]) if holonomic else np.array([], dtype=int)
     square = np.vstack((J[keeping], np.eye(n)[free]))
@@ -63,11 +63,11 @@ def reduced(point: Point, free: list[int], own: list[int], holonomic: int) -> Ar
     shift[:m, : len(point.q)] = (point.columns @ D[: point.mechanical]).T
     shift[m + k :, len(point.q) + n :] = np.eye(len(point.u))
     moved = point.at(1j * STEP * shift)
-    there = moved.stacked(moved.chords.jacobian())[:, rows]
+    there = moved.stacked(moved.here.jacobian)[:, rows]
     velocity = np.tile(point.v[own].astype(complex), (lanes, 1))
     velocity[m : m + k] += 1j * STEP * np.eye(k)
     # J v - b at the moved position and the old v gives b
-    amiss = moved.stacked(moved.chords.rates(moved.state[1]))[:, rows]
+    amiss = moved.stacked(moved.here.constraint_rates)[:, rows]
     fixed = np.einsum("sij,j->si", there, point.v) - amiss
     whole = np.concatenate((there, np.tile(np.eye(n)[own], (lanes, 1, 1))), axis=1)
     v = np.linalg.solve(whole, np.concatenate((fixed, velocity), axis=1)[..., None])[..., 0]
@@ -75,8 +75,8 @@ def reduced(point: Point, free: list[int], own: list[int], holonomic: int) -> Ar
     shift[:, len(point.q) : len(point.q) + n] = v - point.v
     moved = point.at(shift)
     there, bias = (
-        moved.stacked(moved.chords.jacobian())[:, rows],
-        moved.stacked(moved.chords.bias()),
+        moved.stacked(moved.here.jacobian)[:, rows],
+        moved.stacked(moved.here.constraint_bias),
     )
     kkt = np.zeros((lanes, n + len(rows), n + len(rows)), complex)
     kkt[:, :n, :n], kkt[:, n:, :n] = moved.mass, there
@@ -95,9 +95,9 @@ def test_mechanisms(name: str, tmp_path: Path) -> None:
     derivation = derive(model)
     files = render(model, folded=True, only=("linearize", "project"))
     emitted, compiled = load(files, model.name, tmp_path), Compiled(files, model.name, tmp_path)
-    f = Functions(derivation, folded=True)
+    f = Workspace(derivation, folded=True)
     free, own = free_changes(f), [v for _, v in independent(f)]
-    holonomic = sum(equation.holonomic for equation in f.equations)
+    holonomic = sum(equation.holonomic for equation in f.constraint_equations)
     rng = np.random.default_rng(3)
     start = np.array(derivation.assembled.q)
     for _ in range(3):

@@ -31,7 +31,6 @@ from linegraph.dynamics import orthogonality
 from linegraph.dynamics.applied_forces import efforts
 from linegraph.dynamics.chords import equations as chord_equations
 from linegraph.dynamics.edge_variables import InverseScheme
-from linegraph.kinematics.arms import arms
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -135,16 +134,13 @@ class State:
 
     def forces(self) -> Array:
         """Q of the reference."""
-        tree, algebra = self.numeric.tree, self.numeric.algebra
-        crossed = arms(tree, algebra, self.q, self.v)
-        acting = self.numeric.applied(self.q, self.v, driven=True)
-        assert acting is not None
-        active = orthogonality.generalised_forces(tree, algebra, crossed, acting)
-        return np.array(efforts(tree, algebra, self.numeric.chords(self.q, self.v), active))
+        here = self.numeric.at(self.q, self.v)
+        active = orthogonality.generalised_forces(here.state, here.active)
+        return np.array(efforts(here.chords, active))
 
     def acceleration(self) -> Array:
         """v̇ of the reference, under the multipliers here."""
-        M = np.array(self.numeric.united_mass_matrix(self.q, self.v))
+        M = np.array(self.numeric.mass_matrix(self.q, self.v))
         right = self.forces() - self.numeric.bias(self.q, self.v)
         if self.multipliers:
             J = np.array(self.numeric.constraint_jacobian(self.q))
@@ -153,15 +149,7 @@ class State:
 
     def scheme(self) -> InverseScheme:
         """Every edge of the reference."""
-        n = self.numeric
-        crossed = arms(n.tree, n.algebra, self.q, self.v)
-        pairs = zip(chord_equations(n.tree), self.multipliers, strict=True)
-        state = (tuple(self.q), tuple(self.v))
-        chords = n.chords(self.q, self.v)
-        return InverseScheme(
-            self.derivation, n.tree, n.algebra, n.parameters, crossed, chords, state, self.a,
-            list(pairs),
-        )  # fmt: skip
+        return InverseScheme(self.numeric.chords(self.q, self.v), self.a, self.multipliers)
 
     def rates(self, v: Any = None) -> Array:
         """N(q) v."""
@@ -196,7 +184,7 @@ def forms_agree(derivation: Derivation, found: ClosedForms, seed: int, *, reacti
     for k in range(2):
         state = state_of(derivation, 2 * seed + k)
         n, q, v = state.numeric, state.q, state.v
-        assert error(state.form(found.mass_matrix), n.united_mass_matrix(q, v)) < EXACT
+        assert error(state.form(found.mass_matrix), n.mass_matrix(q, v)) < EXACT
         assert error(state.form(found.bias)[:, 0], n.bias(q, v)) < EXACT
         assert error(state.form(found.forces)[:, 0], state.forces()) < EXACT
         assert error([state.form(e) for e in found.energy], n.energy(q, v)) < EXACT

@@ -17,12 +17,8 @@ import numpy as np
 import pytest
 
 import linegraph as lg
-from linegraph.dynamics import orthogonality
-from linegraph.dynamics.applied_forces import efforts
-from linegraph.dynamics.chords import equations
 from linegraph.dynamics.edge_variables import InverseScheme
 from linegraph.dynamics.outputs import observed
-from linegraph.kinematics.arms import arms
 from linegraph.numeric.between_trees import transfer
 from linegraph.readers import modelfile
 
@@ -65,34 +61,21 @@ def readable() -> dict[str, lg.Model]:
 
 def solved(derivation: Derivation, q: Any, v: Any, u: Any) -> dict[str, Any]:
     """Accelerations of all bodies, outputs and kinetic energy at a state."""
-    numeric = derivation.numeric(t=TIME, u=list(u))
-    tree, algebra, parameters = numeric.tree, numeric.algebra, numeric.parameters
-    crossed = arms(tree, algebra, q, v)
-    chords = numeric.chords(q, v)
-    active = orthogonality.generalised_forces(
-        tree, algebra, crossed, numeric.applied(q, v, driven=True)
-    )
-    Q = np.array(efforts(tree, algebra, chords, active), dtype=float)
-    M = np.array(numeric.united_mass_matrix(q, v), dtype=float)
-    h = np.array(numeric.bias(q, v), dtype=float)
-    count, size = len(equations(tree)), len(tree.velocities)
-    J = np.array(chords.jacobian(), dtype=float).reshape(count, size)
-    gamma = np.array(chords.bias(), dtype=float)
+    here = derivation.numeric(t=TIME, u=list(u)).at(q, v)
+    parts = (here.forces, here.mass_matrix, here.bias, here.jacobian, here.constraint_bias)
+    Q, M, h, J, gamma = (np.array(part, dtype=float) for part in parts)
+    count, size = len(gamma), len(h)
+    J = J.reshape(count, size)
     whole = np.block([[M, -J.T], [J, np.zeros((count, count))]])
     x = np.linalg.lstsq(whole, np.concatenate([Q - h, gamma]), rcond=1e-12)[0]
     a, lam = x[:size].tolist(), x[size:].tolist()
-    pairs = list(zip(equations(tree), lam, strict=True))
-    scheme = InverseScheme(
-        derivation, tree, algebra, parameters, crossed, chords, (tuple(q), tuple(v)), a, pairs
-    )
-    outputs, _ = observed(
-        derivation.system, tree, algebra, parameters, chords, (tuple(q), tuple(v)), scheme
-    )
+    scheme = InverseScheme(here.chords, a, lam)
+    outputs, _ = observed(scheme)
     centers = {body: scheme.center(body) for body in derivation.system.bodies}
     return {
         **{body: np.array([*frame.pull, *frame.spin]) for body, frame in centers.items()},
         "outputs": np.array(outputs, dtype=float),
-        "kinetic": np.array(numeric.energy(q, v)[:1]),
+        "kinetic": np.array(here.energy[:1]),
     }
 
 

@@ -20,12 +20,11 @@ from systems import random_trees as trees
 
 from linegraph import Derivation, Model, derive
 from linegraph.algebra.factorization import solve
-from linegraph.algebra.protocol import Floats
 from linegraph.dynamics import mass_matrix as columns_of_mass
-from linegraph.dynamics import orthogonality
 from linegraph.dynamics.articulated import forward_dynamics
+from linegraph.dynamics.orthogonality import inverse_dynamics
 from linegraph.ir.dag import Dag
-from linegraph.kinematics.arms import Arm, arms, coordinate_rates
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.numeric.reference import Numeric
 from linegraph.paper.joint_form import paper_matrices
 from linegraph.programs.register import module_of
@@ -82,8 +81,8 @@ def error(found: Any, expected: Any) -> float:
     return float(np.abs(found - expected).max(initial=0) / (1 + np.abs(expected).max(initial=0)))
 
 
-def crossed(tree: KinematicTree, q: Array, v: Array) -> list[Arm]:
-    return arms(tree, Floats(), floats(q), floats(v))
+def at(tree: KinematicTree, q: Array, v: Array) -> TreeState:
+    return TreeState(tree, floats(q), floats(v))
 
 
 # ---- against the oracle
@@ -130,7 +129,7 @@ def test_energy(seed: int) -> None:
 def test_coordinate_rates(seed: int) -> None:
     spec, _, numeric, states = case(seed)
     for q, v, _ in states:
-        found = coordinate_rates(numeric.tree, Floats(), floats(q), floats(v))
+        found = numeric.coordinate_rates(floats(q), floats(v))
         assert error(found, oracle.coordinate_rates(spec, q, v)) < 1e-15
 
 
@@ -189,7 +188,7 @@ def test_articulated_inertias_solve_for_accelerations(seed: int) -> None:
     for tree in (numeric.tree, numeric.tree.regrouped()):
         for q, v, a in states:
             tau = oracle.inverse_dynamics(spec, q, v, a)
-            solution = forward_dynamics(tree, Floats(), crossed(tree, q, v), floats(tau))
+            solution = forward_dynamics(at(tree, q, v), floats(tau))
             assert error(solution.unknowns, a) < SOLVED
             assert min(solution.pivots) > 0
 
@@ -299,7 +298,7 @@ def names_of(joint: trees.Joint) -> list[str]:
 def test_the_papers_matrices_multiplied_out_are_the_recursive_route(seed: int) -> None:
     _, _, numeric, states = case(seed)
     for q, v, _ in states:
-        paper = paper_matrices(numeric.tree, Floats(), floats(q), floats(v))
+        paper = paper_matrices(at(numeric.tree, q, v))
         assert error(paper.A, numeric.mass_matrix(floats(q))) < PAPER
         assert error([-b for b in paper.B], numeric.bias(floats(q), floats(v))) < PAPER
 
@@ -309,7 +308,8 @@ def test_P_times_H_is_one_and_H_holds_the_paths(seed: int) -> None:
     """H_kj = 1 where joint k lies between ground and body j: the ancestors that networkx finds."""
     tree = case(seed).numeric.tree
     q, v, _ = case(seed).states[0]
-    paper = paper_matrices(tree, Floats(), floats(q), floats(v))
+    state = at(tree, q, v)
+    paper = paper_matrices(state)
     p, h = np.array(paper.P), np.array(paper.H)
     size = len(tree.links)
     assert np.array_equal(p @ h, np.eye(size))
@@ -333,7 +333,8 @@ def test_the_papers_equations_in_matrix_form() -> None:
         )
         tree = derive(model_of(spec)).numeric().tree
         q, v = trees.random_state(rng, spec)
-        paper = paper_matrices(tree, Floats(), floats(q), floats(v))
+        state = at(tree, q, v)
+        paper = paper_matrices(state)
         s, k, c = (np.array(m, dtype=float) for m in (paper.S, paper.K, paper.C))
         h = np.array(paper.H, dtype=float)
         centers = {body.name: (body, m) for body, m in oracle.mass_centers(spec, q, v)}
@@ -348,10 +349,9 @@ def test_the_papers_equations_in_matrix_form() -> None:
         assert error(a, oracle.mass_matrix(spec, q, v)) < PAPER
         # every mass centre is the sum of the arms along its path, after the basement's own arm
         along = c.sum(axis=0)
-        arms = crossed(tree, q, v)
         for i, (_, center) in enumerate(bodies):
             root = next(j for j, link in enumerate(tree.links) if h[j, i] and link.parent < 0)
-            assert error(h[:, i] @ along + arms[root].at, center.origin) < PAPER
+            assert error(h[:, i] @ along + state.arms[root].at, center.origin) < PAPER
 
 
 # ---- the three algebras
@@ -407,7 +407,7 @@ def test_articulated_inertias_label_their_nodes() -> None:
     dag = Dag()
     tree = derive(symbolic_model()).tree(dag, dict.fromkeys(symbolic_model().parameters, 1.5))
     q, v, u = ([dag.symbol(name, i) for i in range(3)] for name in "qvu")
-    solution = forward_dynamics(tree, dag, arms(tree, dag, q, v), u)
+    solution = forward_dynamics(TreeState(tree, q, v), u)
     labels = {n.label for n in dag_values.reached(solution.unknowns) if n.op != "symbol"}
     assert {"articulated inertia, swing -> rod", "accelerations, turn -> arm"} <= labels
 
@@ -532,8 +532,7 @@ def test_a_derivation_over_nodes_is_the_same_twice() -> None:
         tree = derive(model_of(spec)).tree(dag, {})
         q = [dag.symbol("q", i) for i in range(spec.nq)]
         v = [dag.symbol("v", i) for i in range(spec.nv)]
-        crossed = arms(tree, dag, q, v)
-        roots = orthogonality.inverse_dynamics(tree, dag, crossed)
+        roots = inverse_dynamics(TreeState(tree, q, v))
         return [(n.index, n.op, repr(n.a), repr(n.b), n.label) for n in dag_values.reached(roots)]
 
     assert listing() == listing()

@@ -26,9 +26,10 @@ from linegraph.algebra.differentiation import Replay
 from linegraph.algebra.protocol import Floats
 from linegraph.components.parameters import valued
 from linegraph.emission.emit import render
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.numeric.reference import Numeric
 from linegraph.programs.register import PROGRAMS
-from linegraph.programs.workspace import Functions
+from linegraph.programs.workspace import Workspace
 
 if TYPE_CHECKING:
     from linegraph.derivation import Derivation
@@ -84,7 +85,7 @@ class Point:
         )
         if not self.loop.size:
             return found
-        exchange = found.numeric.exchange(*found.state)
+        exchange = found.here.networks
         assert exchange is not None
         network = exchange.network
         residual = found.stacked([exchange.still(r) for r in network.loop])
@@ -97,8 +98,8 @@ class Point:
     def columns(self) -> Array:
         """N(q), for changes of q that keep quaternions on their sphere."""
         units = np.eye(len(self.v))[: self.mechanical]
-        state = self.still.state[0]
-        rows = [self.still.numeric.coordinate_rates(state, list(unit)) for unit in units]
+        q, numeric = self.still.here.q, self.still.numeric
+        rows = [numeric.coordinate_rates(q, list(unit)) for unit in units]
         return np.array([self.still.stacked(row)[0] for row in rows]).reshape(-1, len(self.q)).T
 
     @cached_property
@@ -118,8 +119,7 @@ class Point:
 
     def call(self, name: str, *, folded: bool = True, **more: Any) -> list[Array]:
         """What the program gives: every result as an array."""
-        functions = Functions(self.derivation, folded)
-        (program,) = PROGRAMS[name](functions)
+        (program,) = PROGRAMS[name](Workspace(self.derivation, folded))
         given = {"t": self.t, "q": self.q, "v": self.v, "u": self.u, "loop": self.loop, **more}
 
         def number(symbol: tuple[str, Any]) -> float:
@@ -175,7 +175,7 @@ def above(point: Point) -> Array:
         shift = np.zeros((1, len(point.q) + count + len(point.u)), complex)
         shift[0, : len(point.q)] = 1j * STEP * (point.columns @ along[:first])
         moved = point.at(shift)
-        found = moved.numeric.coordinate_rates(moved.state[0], lanes(rates[None, :]))
+        found = TreeState(moved.tree, moved.here.q, lanes(rates[None, :])).coordinate_rates
         return rate(moved.stacked(found)[0])
 
     drift = [slopes(point.v, d) - slopes(d, point.v) for d in units]
@@ -239,8 +239,7 @@ def test_by_parameters(name: str) -> None:
 
     algebra: Any = moved.algebra
     values = valued(model.parameters.values(), algebra, value)
-    numeric = Numeric(derivation.tree(algebra, values), model, algebra, values, derivation)
-    moved.__dict__["numeric"] = numeric
+    moved.__dict__["numeric"] = Numeric(derivation.tree(algebra, values), derivation)
     a = rng.normal(size=len(v))
     expected = np.imag(moved.inverse(np.tile(a, (len(names), 1)))).T / STEP
     parameters = {p.name: float(p.value) for p in model.parameters.values()}

@@ -27,7 +27,7 @@ from linegraph import ModelError, derive
 from linegraph.emission.emit import render
 from linegraph.kinematics.frame_trees import NamedFrame
 from linegraph.programs.kinematics import OF_FRAMES, RESULTS, both
-from linegraph.programs.workspace import Functions
+from linegraph.programs.workspace import Workspace
 from linegraph.readers import modelfile
 
 if TYPE_CHECKING:
@@ -472,7 +472,7 @@ def test_all_ways_lead_to_the_same(seed: int, coordinates: str) -> None:
     model = closed_model(closed.random_system(seed), "model")
     model.formulation(coordinates=coordinates)
     frame = NamedFrame("last", next(reversed(model.bodies)))
-    f = Functions(derive(model), True, (frame,))
+    f = Workspace(derive(model), True, (frame,))
     sources = [*both(f, (frame,)), *both(f, (frame,), whole=True)]
     draw = np.random.default_rng(seed)
     q, v = draw.normal(size=len(f.q)).tolist(), draw.normal(size=len(f.v)).tolist()

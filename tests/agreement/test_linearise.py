@@ -25,7 +25,7 @@ from linegraph import Model, ModelError
 from linegraph.emission.emit import render
 from linegraph.programs.loop_derivatives import free_changes
 from linegraph.programs.loops import independent
-from linegraph.programs.workspace import Functions
+from linegraph.programs.workspace import Workspace
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -332,7 +332,7 @@ def test_loops_that_close_in_numbers_alone(name: str, tmp_path: Path) -> None:
     q = derivation.assembly(LOOPS[name], start=derivation.assembled.q).q
     still = [0.0] * len(derivation.v)
     count = len(derivation.u)
-    f = Functions(derivation, folded=True)
+    f = Workspace(derivation, folded=True)
     free, own = free_changes(f), [v for _, v in independent(f)]
     numeric = derivation.numeric()
     bias = np.array(numeric.bias(q, still), float)
@@ -347,7 +347,7 @@ def test_loops_that_close_in_numbers_alone(name: str, tmp_path: Path) -> None:
     files = render(model, folded=True, only=("linearize",), languages=["python"])
     module = load(files, name, tmp_path)
     found = module.linearize(np.array(q), np.array(still), balanced)
-    holonomic = sum(equation.holonomic for equation in f.equations)
+    holonomic = sum(equation.holonomic for equation in f.constraint_equations)
     point = Point(derivation, 0.0, np.array(q), np.array(still), balanced)
     stepped = reduced(point, free, own, holonomic)
     for mine, theirs in zip((A, B), found, strict=True):

@@ -5,6 +5,8 @@ Rates come from calculating with jets, so that nothing here is a difference quot
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from support.spec_models import model_of
@@ -16,7 +18,7 @@ from linegraph.algebra.jets import Jet, Jets
 from linegraph.algebra.protocol import Floats
 from linegraph.dynamics.mass_matrix import mass_matrix
 from linegraph.dynamics.orthogonality import inverse_dynamics
-from linegraph.kinematics.arms import arms, coordinate_rates
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.verification.checking import check
 
 
@@ -64,13 +66,11 @@ def test_the_same_with_every_joint(seed: int) -> None:
 def skew_defect(model: Model, q: list[float], v: list[float]) -> float:
     """v^T (dM/dt - 2C) v = 0: the velocity terms of the bias do half the work of dM/dt."""
     model.gravity = (0, 0, 0)
-    links = derive(model).numeric().tree
-    rates = coordinate_rates(links, Floats(), q, v)
-    jets = Jets(Floats())
-    moving = [Jet(x, dx, 0) for x, dx in zip(q, rates, strict=True)]
-    rows = mass_matrix(links, jets, arms(links, jets, moving, v))
+    state = derive(model).numeric().at(q, v).state
+    moving = [Jet(x, dx, 0) for x, dx in zip(q, state.coordinate_rates, strict=True)]
+    rows = mass_matrix(TreeState(replace(state.tree, algebra=Jets(Floats())), moving, v))
     change = np.array([[x.dx if isinstance(x, Jet) else 0.0 for x in row] for row in rows])
-    coriolis = np.array(inverse_dynamics(links, Floats(), arms(links, Floats(), q, v)))
+    coriolis = np.array(inverse_dynamics(state))
     work = float(np.array(v) @ change @ np.array(v))
     scale = 1 + float(np.abs(v) @ np.abs(change) @ np.abs(v))
     return abs(2 * float(np.array(v) @ coriolis) - work) / scale

@@ -162,7 +162,7 @@ def massive(case: Case) -> None:
     assert error(np.real(taken) + r.bias, r.forces + r.bias) <= SOLVED
     numeric = r.derivation.numeric(None, float(r.t[0]), list(r.u[0]))
     q, v = list(r.q[0]), list(r.v[0])
-    M, h = numeric.united_mass_matrix(q, v), numeric.bias(q, v)
+    M, h = numeric.mass_matrix(q, v), numeric.bias(q, v)
     assert error(r.mass[:1], np.array(M, float)[None]) <= EXACT
     assert error(r.bias[:1], np.array(h, float)[None]) <= EXACT
     columns = [numeric.inverse_dynamics(q, v, list(row)) for row in np.eye(len(v))]

@@ -19,13 +19,13 @@ from systems import random_trees as trees
 
 from linegraph import Model, derive
 from linegraph.algebra.protocol import Floats
-from linegraph.dynamics import orthogonality
 from linegraph.dynamics.applied_forces import Applied
 from linegraph.dynamics.articulated import forward_dynamics
 from linegraph.dynamics.composite_bias import bias_beside_mass
 from linegraph.dynamics.mass_matrix import mass_matrix
+from linegraph.dynamics.orthogonality import inverse_dynamics
 from linegraph.emission.emit import render
-from linegraph.kinematics.arms import arms
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.kinematics.working_frames import shortened
 from linegraph.readers import urdf
 from linegraph.spatial.vector import ZERO
@@ -46,21 +46,20 @@ def error(found: Any, expected: Any) -> float:
 
 def compare(tree: KinematicTree, q: Any, v: Any, a: Any) -> float:
     """The largest relative error of M, both forms of h, inverse dynamics and, where M allows, v̇."""
-    algebra, short = Floats(), shortened(tree).tree
     q, v, a = ([float(x) for x in y] for y in (q, v, a))
-    plain, crossed = (arms(t, algebra, q, v) for t in (tree, short))
-    nothing = Applied([(ZERO, ZERO)] * len(short.links), [0] * len(tree.velocities))
-    m = np.array(mass_matrix(tree, algebra, plain), dtype=float)
-    h = orthogonality.inverse_dynamics(tree, algebra, plain)
-    tau = orthogonality.inverse_dynamics(tree, algebra, plain, a)
+    plain, short = (TreeState(t, q, v) for t in (tree, shortened(tree).tree))
+    nothing = Applied([(ZERO, ZERO)] * len(short.tree.links), [0] * len(tree.velocities))
+    m = np.array(mass_matrix(plain), dtype=float)
+    h = inverse_dynamics(plain)
+    tau = inverse_dynamics(plain, a)
     errors = [
-        error(mass_matrix(short, algebra, crossed), m),
-        error(orthogonality.inverse_dynamics(short, algebra, crossed), h),
-        error(bias_beside_mass(short, algebra, crossed, nothing), h),
-        error(orthogonality.inverse_dynamics(short, algebra, crossed, a), tau),
+        error(mass_matrix(short), m),
+        error(inverse_dynamics(short), h),
+        error(bias_beside_mass(short, nothing), h),
+        error(inverse_dynamics(short, a), tau),
     ]
-    if not short.coupled and len(a):
-        solved = forward_dynamics(short, algebra, crossed, tau).unknowns
+    if not short.tree.coupled and len(a):
+        solved = forward_dynamics(short, tau).unknowns
         errors.append(error(solved, a) / max(1.0, 1e-2 * np.linalg.cond(m)))
     return max(errors)
 

@@ -227,7 +227,7 @@ def test_equals_its_parts_with_massless_bodies(name: str, seed: int) -> None:
         kinetic, potential = whole.energy(q, v)
         assert error(kinetic, oracle.kinetic_energy(parts, q, v)) < TOLERANCE
         assert error(potential, oracle.potential_energy(parts, q)) < TOLERANCE
-        paper = paper_matrices(whole.tree, Floats(), q, v)
+        paper = paper_matrices(whole.at(q, v).state)
         assert error(paper.A, mass) < 10 * TOLERANCE
         assert error(-np.array(paper.B), bias) < 10 * TOLERANCE
 

@@ -20,21 +20,19 @@ from support.rigid_motion import STEP, TINY
 
 import linegraph as lg
 from linegraph.dynamics.chords import Chords, equations
-from linegraph.dynamics.circuit_lengths import Given, of_rows, pure, sizes
-from linegraph.kinematics.arms import arms
+from linegraph.dynamics.circuit_lengths import of_rows, pure, sizes
+from linegraph.kinematics.tree_state import TreeState
 
 Q = np.array([0.7, -0.4, 1.1])  # the loop stands open: rows are right there, too
 V = np.array([0.9, -1.3, 0.6])
 
 
 def chords(model: lg.Model, q: Any, v: Any, **arguments: Any) -> Chords:
-    tree, floats = walked(model, **arguments)
-    return Chords(tree, floats, arms(tree, floats, q, v), {})
+    return Chords(TreeState(walked(model, **arguments), q, v))
 
 
 def test_a_hinge_that_closes_a_loop_has_three_forces_and_two_torques() -> None:
-    tree, _ = walked(four_bar())
-    found = equations(tree)
+    found = equations(walked(four_bar()))
     assert [e.multiplier.name for e in found] == ["c_f1", "c_f2", "c_f3", "c_t1", "c_t2"]
     assert [e.multiplier.unit for e in found] == ["N"] * 3 + ["N*m"] * 2
     assert [(e.component, e.place, e.holonomic) for e in found] == [
@@ -52,7 +50,7 @@ def test_j_is_the_derivative_of_the_gap_and_gamma_of_its_rate() -> None:
     J = [gap(Q + 1j * TINY * e).imag / TINY for e in np.eye(3)]
     np.testing.assert_allclose(found.jacobian()[:2], np.array(J).T, atol=1e-15)
     np.testing.assert_allclose(found.jacobian()[2:], 0, atol=0)
-    np.testing.assert_allclose(found.rates(V)[:2], gap(Q + 1j * TINY * V).imag / TINY, atol=1e-15)
+    np.testing.assert_allclose(found.rates()[:2], gap(Q + 1j * TINY * V).imag / TINY, atol=1e-15)
 
     def rate(t: float) -> Any:
         return gap(Q + (t + 1j * TINY) * V).imag / TINY
@@ -70,14 +68,14 @@ def test_where_the_law_of_cosines_closes_the_loop_nothing_remains(sign: int) -> 
     np.testing.assert_allclose(found.position(), 0, atol=4e-16)
     rotation, displacement = found.seen("c")
     np.testing.assert_allclose(displacement, 0, atol=4e-16)
-    (angle,) = found.coordinates(found._tree.closures[0])[0]
+    (angle,) = found.coordinates(found.state.tree.closures[0])[0]
     assert angle == pytest.approx(q[2] - q[0] - q[1], abs=1e-15)
     assert rotation[1][0] == pytest.approx(np.sin(angle), abs=1e-15)
 
 
 def test_the_chords_own_angle_and_rate_are_what_laws_may_name() -> None:
     found = chords(four_bar(), Q, V)
-    (closure,) = found._tree.closures
+    (closure,) = found.state.tree.closures
     named = found.named(closure)
     assert set(named) == {"c", "der(c)"}
     assert named["c"] == pytest.approx(Q[2] - Q[0] - Q[1], abs=1e-15)
@@ -86,7 +84,7 @@ def test_the_chords_own_angle_and_rate_are_what_laws_may_name() -> None:
 
 def test_an_effort_in_the_chord_acts_along_what_its_angle_depends_on() -> None:
     found = chords(four_bar(), Q, V)
-    (closure,) = found._tree.closures
+    (closure,) = found.state.tree.closures
     force = np.zeros(3)
     for freedom, entry in found.along(found.effort(closure, [2.5])):
         force[freedom.index] += entry
@@ -114,7 +112,7 @@ def test_a_rod_with_a_stroke_has_what_its_length_prescribes() -> None:
     slope = distance(q + 1j * TINY).imag / TINY
     assert found.position() == [pytest.approx(distance(q) - 0.6 - 0.1 * t**2, abs=1e-15)]
     assert found.jacobian() == [[pytest.approx(slope, abs=1e-15)]]
-    assert found.rates([v]) == [pytest.approx(slope * v - 0.2 * t, abs=1e-15)]
+    assert found.rates() == [pytest.approx(slope * v - 0.2 * t, abs=1e-15)]
 
     def gap_rate(at: float) -> float:
         return distance(q + v * at + 1j * TINY * v).imag / TINY - 0.2 * (t + at)
@@ -124,8 +122,7 @@ def test_a_rod_with_a_stroke_has_what_its_length_prescribes() -> None:
 
 
 def measured(model: lg.Model) -> Any:
-    tree, floats = walked(model)
-    return sizes(Given(tree, floats, {}), equations(tree))
+    return sizes(walked(model))
 
 
 def test_the_length_of_a_circuit_is_the_sum_of_its_arms() -> None:

@@ -40,7 +40,7 @@ from linegraph.dynamics.regularity import (
     require_motion,
     sample_tree,
 )
-from linegraph.kinematics.arms import arms
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.spatial.placement import Placement
 from linegraph.spatial.rotation import IDENTITY_MATRIX
 
@@ -59,9 +59,8 @@ def double_pendulum() -> lg.Model:
     return model
 
 
-def at(model: lg.Model, q: Any, v: Any, **arguments: Any) -> tuple[Any, Any, Any]:
-    tree, floats = walked(model, **arguments)
-    return tree, floats, arms(tree, floats, q, v)
+def at(model: lg.Model, q: Any, v: Any, **arguments: Any) -> TreeState:
+    return TreeState(walked(model, **arguments), q, v)
 
 
 def test_two_links_have_the_textbooks_mass_matrix_and_bias() -> None:
@@ -73,17 +72,17 @@ def test_two_links_have_the_textbooks_mass_matrix_and_bias() -> None:
         [J1 + M1 * C1**2 + M2 * L1**2 + far + 2 * cross * math.cos(b), far + cross * math.cos(b)],
         [far + cross * math.cos(b), far],
     ]
-    np.testing.assert_allclose(masses.mass_matrix(*here), M, atol=EXACT)
+    np.testing.assert_allclose(masses.mass_matrix(here), M, atol=EXACT)
     pull = M2 * G * C2 * math.sin(a + b)
     h = [
         -cross * math.sin(b) * (2 * da * db + db**2) + (M1 * C1 + M2 * L1) * G * math.sin(a) + pull,
         cross * math.sin(b) * da**2 + pull,
     ]
-    np.testing.assert_allclose(inverse_dynamics(*here), h, atol=EXACT)
+    np.testing.assert_allclose(inverse_dynamics(here), h, atol=EXACT)
     speeding = [0.3, -2.0]
     expected = np.array(M) @ speeding + h
-    np.testing.assert_allclose(inverse_dynamics(*here, speeding), expected, atol=2 * EXACT)
-    kinetic, potential = energy(*here)
+    np.testing.assert_allclose(inverse_dynamics(here, speeding), expected, atol=2 * EXACT)
+    kinetic, potential = energy(here)
     assert kinetic == pytest.approx(np.array([da, db]) @ M @ [da, db] / 2)
     low = M1 * C1 * math.cos(a) + M2 * (L1 * math.cos(a) + C2 * math.cos(a + b))
     assert potential == pytest.approx(-G * low)
@@ -91,17 +90,17 @@ def test_two_links_have_the_textbooks_mass_matrix_and_bias() -> None:
 
 def test_the_mass_matrix_of_a_fork_is_the_sum_over_its_bodies() -> None:
     q, v = LIMB_STATE
-    found = masses.mass_matrix(*at(modelled(LIMB), q, v))
+    found = masses.mass_matrix(at(modelled(LIMB), q, v))
     np.testing.assert_allclose(found, mass_matrix(LIMB, q), atol=EXACT)
 
 
 def test_composites_have_the_masses_of_all_bodies_beyond_a_joint() -> None:
     q, v = LIMB_STATE
-    tree, floats, crossed = at(modelled(LIMB), q, v)
+    state = at(modelled(LIMB), q, v)
     bodies = poses(LIMB, q)
     beyond = {0: range(5), 1: (1, 2, 3, 4), 2: (2,), 3: (3, 4), 4: (4,)}
     for i, (found, own) in enumerate(
-        zip(composites(tree, floats, crossed), link_poses(tree, bodies), strict=True)
+        zip(composites(state), link_poses(state.tree, bodies), strict=True)
     ):
         mass, first, inertia = 0.0, np.zeros(3), np.zeros((3, 3))
         for k in beyond[i]:
@@ -131,11 +130,10 @@ def oblique(count: int) -> tuple[Part, ...]:
 def test_long_chains_carry_columns_to_ground_and_short_ones_do_not() -> None:
     for count, ground in ((2, False), (12, True)):
         q = np.linspace(-1, 1, count)
-        tree, floats, crossed = at(modelled(oblique(count)), q, 0 * q)
-        assert ground_is_cheaper(tree, crossed) is ground
-        found = masses.mass_matrix(tree, floats, crossed)
+        state = at(modelled(oblique(count)), q, 0 * q)
+        assert ground_is_cheaper(state) is ground
         expected = mass_matrix(oblique(count), q)
-        np.testing.assert_allclose(found, expected, atol=1e-14 * expected.max())
+        np.testing.assert_allclose(masses.mass_matrix(state), expected, atol=1e-14 * expected.max())
 
 
 def test_coupled_hinges_meet_in_one_entry() -> None:
@@ -145,17 +143,18 @@ def test_coupled_hinges_meet_in_one_entry() -> None:
     whole = J1 + M1 * C1**2 + M2 * L1**2 + far + 2 * cross
     # (1, -2) M (1, -2)^T
     expected = whole - 4 * (far + cross) + 4 * far
-    found = masses.mass_matrix(*at(model, [0.4], [0.0]))
+    found = masses.mass_matrix(at(model, [0.4], [0.0]))
     assert found == [[pytest.approx(expected, abs=EXACT)]]
 
 
 # what acts
 
 
-def acting(model: lg.Model, q: Any, v: Any, driven: bool = False, **kw: Any) -> tuple[Any, Applied]:
-    tree, floats, crossed = at(model, q, v, **kw)
-    found = applied(model.system(), tree, floats, {}, crossed, tuple(q), tuple(v), driven=driven)
-    return (tree, floats, crossed), found
+def acting(
+    model: lg.Model, q: Any, v: Any, driven: bool = False, **arguments: Any
+) -> tuple[TreeState, Applied]:
+    state = at(model, q, v, **arguments)
+    return state, applied(Chords(state), driven=driven)
 
 
 EYE = (0.4, 0.6, -0.2)
@@ -178,10 +177,10 @@ def stretch(q: Any) -> Any:
 
 def test_a_spring_between_two_points_works_against_its_stretch() -> None:
     q, v = LIMB_STATE
-    here, found = acting(sprung(), q, v)
+    state, found = acting(sprung(), q, v)
     tension = K * (stretch(q) - REST)
     slope = np.array([stretch(q + 1j * TINY * e).imag / TINY for e in np.eye(7)])
-    np.testing.assert_allclose(generalised_forces(*here, found), -tension * slope, atol=1e-12)
+    np.testing.assert_allclose(generalised_forces(state, found), -tension * slope, atol=1e-12)
     assert found.potential == pytest.approx(K * (stretch(q) - REST) ** 2 / 2)
     assert found.efforts == [0] * 7
     # only the link at its far end feels it: the other end is ground
@@ -190,9 +189,9 @@ def test_a_spring_between_two_points_works_against_its_stretch() -> None:
 
 def test_a_springs_wrench_is_its_pull_and_its_moment_about_the_links_origin() -> None:
     q, v = LIMB_STATE
-    (tree, _, _), found = acting(sprung(), q, v)
+    state, found = acting(sprung(), q, v)
     bodies = poses(LIMB, q)
-    own = link_poses(tree, bodies)[4]
+    own = link_poses(state.tree, bodies)[4]
     end = (bodies[4] @ [*POINT, 1])[:3]
     line = np.array(EYE) - end
     pull = K * (np.linalg.norm(line) - REST) * line / np.linalg.norm(line)
@@ -215,11 +214,11 @@ def test_loads_push_in_the_axes_of_ground_or_of_their_body() -> None:
     for axes in (WORLD, BODY):
         model = modelled(LIMB)
         model.load("push", at="b3", force=(1, -2, 3), torque=(0.5, 0, -1), axes=axes)
-        here, found = acting(model, q, v)
+        state, found = acting(model, q, v)
         turn = poses(LIMB, q)[3][:3, :3] if axes == BODY else np.eye(3)
         J = jacobian(LIMB, q, 3)
         expected = (turn @ [1, -2, 3]) @ J[:3] + (turn @ [0.5, 0, -1]) @ J[3:]
-        np.testing.assert_allclose(generalised_forces(*here, found), expected, atol=2e-14)
+        np.testing.assert_allclose(generalised_forces(state, found), expected, atol=2e-14)
 
 
 def test_what_names_an_input_is_driven_and_the_rest_is_bias() -> None:
@@ -245,9 +244,8 @@ def test_efforts_stand_at_their_own_velocity_or_act_between_angles_from_ground()
     for coordinates, expected in (("joint", u), ("absolute-angle", [2 - 3, 3 - 5, 5])):
         model = modelled(PLANE)
         model.formulation(coordinates=coordinates)
-        tree, floats, crossed = at(model, [0.1, 0.2, 0.3], [0, 0, 0], u=u)
-        chords = Chords(tree, floats, crossed, {})
-        assert efforts(tree, floats, chords, [0, 0, 0]) == expected
+        chords = Chords(at(model, [0.1, 0.2, 0.3], [0, 0, 0], u=u))
+        assert efforts(chords, [0, 0, 0]) == expected
 
 
 def test_momentum_changes_as_h_says_of_the_power_of_gravity() -> None:
@@ -255,9 +253,9 @@ def test_momentum_changes_as_h_says_of_the_power_of_gravity() -> None:
     q, v = LIMB_STATE
 
     def total(t: float) -> float:
-        return sum(energy(*at(modelled(LIMB), q + v * t, v)))
+        return sum(energy(at(modelled(LIMB), q + v * t, v)))
 
-    h = inverse_dynamics(*at(modelled(LIMB), q, v))
+    h = inverse_dynamics(at(modelled(LIMB), q, v))
     change = (total(STEP) - total(-STEP)) / (2 * STEP)
     assert v @ h == pytest.approx(change, abs=1e-8)
 
@@ -266,7 +264,7 @@ def test_momentum_changes_as_h_says_of_the_power_of_gravity() -> None:
 
 
 def idle(model: lg.Model) -> list[str]:
-    tree, _ = walked(model)
+    tree = walked(model)
     return [x.name for x in massless(tree, lambda: [])]
 
 
@@ -293,13 +291,13 @@ def test_a_point_mass_on_the_axis_of_a_hinge_is_not_moved_by_it() -> None:
 
 
 def test_what_networks_add_may_be_the_inertia_that_is_missing() -> None:
-    tree, _ = walked(modelled((PLANE[0]._replace(mass=0.0, inertia=(0, 0, 0)),)))
+    tree = walked(modelled((PLANE[0]._replace(mass=0.0, inertia=(0, 0, 0)),)))
     assert [x.name for x in massless(tree, lambda: [(0, 0, 0.1)])] == []
     assert [x.name for x in massless(tree, lambda: [(1, 1, 0.1)])] == ["j0"]
 
 
 def test_a_negative_inertia_is_refused_with_its_joint() -> None:
-    tree, _ = walked(modelled((PLANE[0]._replace(mass=0.0, inertia=(0, 0, -1)),)))
+    tree = walked(modelled((PLANE[0]._replace(mass=0.0, inertia=(0, 0, -1)),)))
     with pytest.raises(lg.ModelError, match="negative") as told:
         massless(tree, lambda: [])
     assert told.value.thing == 'joint "j0"'
@@ -307,7 +305,7 @@ def test_a_negative_inertia_is_refused_with_its_joint() -> None:
 
 def test_a_solid_link_has_inertia_in_every_direction() -> None:
     def solid(**changes: Any) -> bool:
-        tree, _ = walked(modelled((PLANE[0]._replace(**changes),)))
+        tree = walked(modelled((PLANE[0]._replace(**changes),)))
         return is_solid(tree.links[0])
 
     assert solid()
@@ -339,9 +337,9 @@ def test_refusals_name_all_joints_and_functions_once() -> None:
 def test_a_model_in_which_nothing_moves_is_refused() -> None:
     model = lg.Model("wall")
     model.fixed("nail", between=("ground", model.body("brick", mass=1.0)))
-    tree, _ = walked(model)
+    tree = walked(model)
     with pytest.raises(lg.ModelError, match="no joint can move"):
-        require_motion(model.system(), tree)
+        require_motion(tree)
 
 
 def test_a_sample_of_a_tree_has_the_parameters_own_values() -> None:

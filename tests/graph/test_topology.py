@@ -21,6 +21,7 @@ from linegraph.algebra.protocol import Floats
 from linegraph.errors import ModelError
 from linegraph.graph.forest import Topology, choose_forest
 from linegraph.graph.multigraph import Edge, Projection
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.paper.joint_form import paper_matrices
 
 if TYPE_CHECKING:
@@ -355,9 +356,8 @@ def test_the_papers_H_is_the_cutset_matrix_of_joints_and_inertia_edges(seed: int
     spec = trees.random_tree(rng, bodies=1 + seed % 8)
     derivation = derive(model_of(spec))
     q, v = trees.random_state(rng, spec)
-    algebra = Floats()
-    tree: KinematicTree = derivation.tree(algebra, {})
-    h = paper_matrices(tree, algebra, q.tolist(), v.tolist()).H
+    tree: KinematicTree = derivation.tree(Floats(), {})
+    h = paper_matrices(TreeState(tree, q.tolist(), v.tolist())).H
     cutset = derivation.topology.cutset
     for i, link in enumerate(tree.links):
         row = cutset.rows.index(link.joint.name)

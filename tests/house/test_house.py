@@ -33,11 +33,6 @@ MOST_ROOT_MODULES = 14
 MOST_PARAMETERS = 6
 
 TO_SHRINK = {
-    # what acts: laws, network, wrenches and powers are resolved together, from six separate things
-    "linegraph.dynamics.applied_forces.applied",
-    "linegraph.dynamics.applied_forces.__init__",
-    "linegraph.dynamics.edge_variables.__init__",
-    "linegraph.dynamics.outputs.observed",
     # the options of `emit`, as users give them
     "linegraph.emission.emit.emit",
     "linegraph.emission.emit.render",

@@ -93,7 +93,7 @@ def require_minimal(model: Model) -> BaseParameters:
     """Y pi = Y_b B pi at random states, and Y_b has full rank."""
     base, numeric = sample_of(model)
     derivation = base.derivation
-    seen = axes(model, derivation.structure)
+    seen = axes(derivation.structure)
     numerics = in_numbers(derivation, numeric, 7)
     states = (3 * base.count // len(derivation.structure.velocities) + 12) // len(numerics) + 2
     Y = regressor_rows(numerics, seen, states, random.Random(5))

@@ -21,9 +21,8 @@ from linegraph.emission.emit import module_for, render
 from linegraph.identification.regressor import Columns, Station, by_motions, by_wrenches
 from linegraph.identification.standard_parameters import MOMENTS, homes
 from linegraph.identification.tied_columns import tied, ties
-from linegraph.kinematics.arms import arms
 from linegraph.model.system import variant
-from linegraph.programs.workspace import Functions
+from linegraph.programs.workspace import Workspace
 from linegraph.readers import modelfile, urdf
 
 if TYPE_CHECKING:
@@ -279,15 +278,14 @@ def test_agrees_with_pinocchio(file: Path, base: str, tmp_path: Path) -> None:
 def columns_of(model: Model) -> dict[str, list[Columns]]:
     """Both routes in the frames of the walk, over floats at a random state."""
     numeric = derive(model).numeric()
-    tree, algebra = numeric.tree, numeric.algebra
+    tree = numeric.tree
     draw = np.random.default_rng(0)
     q, v, a = (draw.normal(size=len(x)) for x in (tree.positions, tree.velocities, tree.velocities))
     q = list(q)
     tree.normalise(q)
-    crossed = arms(tree, algebra, q, v)
+    state = numeric.at(q, v).state
     stations = [Station(i, home.pose) for i, home in enumerate(homes(tree))]
-    routes = (by_motions, by_wrenches)
-    return {r.__name__: r(tree, algebra, crossed, stations, list(a)) for r in routes}
+    return {r.__name__: r(state, stations, list(a)) for r in (by_motions, by_wrenches)}
 
 
 def test_both_routes_agree() -> None:
@@ -331,8 +329,8 @@ def test_columns_that_are_sums_of_others_are_the_same() -> None:
         body = slanted.body(f"b{k}", mass=1.0, mass_center=(0.1, 0.1, 0), inertia=(0.1, 0.1, 0.1))
         slanted.revolute(f"q{k}", (near.frame(f"f{k}", (0.2, 0, 0)), body), axis=direction)
         near = body
-    functions = Functions(derive(slanted), folded=False)
-    found = ties(functions.derivation, functions.tree, folded=False)
+    f = Workspace(derive(slanted), folded=False)
+    found = ties(f.derivation, f.tree, folded=False)
     assert {tie.moment for tie in found} == {0}
 
 

@@ -22,7 +22,6 @@ from support.rigid_motion import TINY, axial, moving, of_quaternion, pose, turne
 
 import linegraph as lg
 from linegraph.kinematics.accelerations import crossed_with, crossing, seen_near, spins
-from linegraph.kinematics.arms import arms
 from linegraph.kinematics.ground_frames import (
     GROUND_FRAME,
     Pair,
@@ -33,6 +32,7 @@ from linegraph.kinematics.ground_frames import (
     seen,
 )
 from linegraph.kinematics.links import Seat
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.kinematics.twists import (
     Outlook,
     accelerations,
@@ -47,8 +47,8 @@ Q, V = LIMB_STATE
 A = np.array([0.5, -1.2, 0.9, 0.2, -0.6, 1.4, 0.3])
 EXACT = 4e-15
 OF_DIFFERENCES = 3e-9  # of second derivatives: h**2 with h = 1e-5, and rounding / h
-TREE, FLOATS = walked(modelled(LIMB))
-CROSSED = arms(TREE, FLOATS, Q, V)
+TREE = walked(modelled(LIMB))
+STATE = TreeState(TREE, Q, V)
 
 
 def close(found: Any, expected: Any, within: float = EXACT) -> None:
@@ -68,7 +68,7 @@ def link_motion(i: int, a: Any = None) -> Any:
 @pytest.mark.parametrize("i", range(len(LIMB)))
 @pytest.mark.parametrize("a", [None, A], ids=["steady", "accelerated"])
 def test_frames_of_links_move_as_products_of_poses_do(i: int, a: Any) -> None:
-    found = frames(TREE, FLOATS, CROSSED, a)[i]
+    found = frames(STATE, a)[i]
     expected = link_motion(i, a)
     close(found.rotation, expected.rotation)
     close(found.origin, expected.place)
@@ -81,7 +81,7 @@ def test_frames_of_links_move_as_products_of_poses_do(i: int, a: Any) -> None:
 @pytest.mark.parametrize("i", range(len(LIMB)))
 @pytest.mark.parametrize("a", [None, A], ids=["steady", "accelerated"])
 def test_spins_are_the_same_motion_in_the_links_axes_with_gravity(i: int, a: Any) -> None:
-    found = spins(TREE, FLOATS, CROSSED, a)[i]
+    found = spins(STATE, a)[i]
     expected = link_motion(i, a)
     back = expected.rotation.T
     close(found.velocity, back @ expected.angular)
@@ -91,7 +91,7 @@ def test_spins_are_the_same_motion_in_the_links_axes_with_gravity(i: int, a: Any
 
 @pytest.mark.parametrize("i", range(len(LIMB)))
 def test_a_joint_crossed_in_the_near_links_axes_gives_the_same_vectors(i: int) -> None:
-    arm, near = CROSSED[i], (0.3, -0.4, 0.5)
+    arm, near = STATE.arms[i], (0.3, -0.4, 0.5)
     here = crossing(arm, near)
     there = crossed_with(arm, seen_near(arm), near)
     for mine, other in zip(here, there, strict=True):
@@ -103,7 +103,7 @@ def test_a_joint_crossed_in_the_near_links_axes_gives_the_same_vectors(i: int) -
 def test_a_place_on_a_body_moves_with_it() -> None:
     place, axes = (0.3, -0.1, 0.7), ((0, -1, 0), (1, 0, 0), (0, 0, 1))
     link, seat = TREE.bodies["b4"]
-    body = seated(frames(TREE, FLOATS, CROSSED), Seat(link, seat.at, seat.rotation))
+    body = seated(frames(STATE), Seat(link, seat.at, seat.rotation))
     found = body.at(place, axes)
     fixed = np.eye(4)
     fixed[:3, :3], fixed[:3, 3] = axes, place
@@ -114,7 +114,7 @@ def test_a_place_on_a_body_moves_with_it() -> None:
 
 
 def test_relative_motion_is_that_of_one_frame_in_the_other() -> None:
-    found = frames(TREE, FLOATS, CROSSED)
+    found = frames(STATE)
     tail, head = found[2], found[4]
 
     def relative(t: Any) -> Any:
@@ -137,10 +137,10 @@ def test_a_force_between_two_links_does_along_velocities_what_its_power_says(
     head: int, tail: int
 ) -> None:
     force, torque, point = (1.0, -2.0, 0.5), (0.3, 0.7, -1.1), (0.2, 0.4, -0.3)
-    moving_frames = frames(TREE, FLOATS, CROSSED)
+    moving_frames = frames(STATE)
     pair = Pair(force, torque, point, head, tail)
     found = np.zeros(len(V))
-    for freedom, entry in along_velocities(TREE, CROSSED, moving_frames, pair):
+    for freedom, entry in along_velocities(STATE, moving_frames, pair):
         found[freedom.index] += entry
     expected = np.zeros(len(V))
     for link, sign in ((head, 1), (tail, -1)):
@@ -154,7 +154,7 @@ def test_a_force_between_two_links_does_along_velocities_what_its_power_says(
 
 @pytest.mark.parametrize("i", range(len(LIMB)))
 def test_the_jacobian_of_a_link_is_the_derivative_of_its_pose(i: int) -> None:
-    view = Outlook(TREE, FLOATS, CROSSED)
+    view = Outlook(STATE)
     link, own = TREE.bodies[f"b{i}"]
     assert link == i
     back = -np.array(own.rotation).T @ np.array(own.at)
@@ -164,7 +164,7 @@ def test_the_jacobian_of_a_link_is_the_derivative_of_its_pose(i: int) -> None:
 
 @pytest.mark.parametrize("i", range(len(LIMB)))
 def test_every_way_to_a_velocity_or_an_acceleration_ends_at_the_same(i: int) -> None:
-    view = Outlook(TREE, FLOATS, CROSSED)
+    view = Outlook(STATE)
     expected = link_motion(i)
     ways = velocities(view, i)
     assert len(ways) == 4
@@ -181,27 +181,27 @@ def test_every_way_to_a_velocity_or_an_acceleration_ends_at_the_same(i: int) -> 
 def test_angles_measured_from_ground_are_sums_of_the_hinges_angles() -> None:
     model = modelled(PLANE)
     model.formulation(coordinates="absolute-angle")
-    tree, floats = walked(model)
+    tree = walked(model)
     assert tree.levelled
     own, rates, second = (
         np.array(x) for x in ([0.4, -0.9, 0.5], [0.7, 0.3, -1.2], [0.2, 0.9, -0.4])
     )
     q, v, a = (np.cumsum(x) for x in (own, rates, second))
-    crossed = arms(tree, floats, q, v)
-    view = Outlook(tree, floats, crossed)
+    state = TreeState(tree, q, v)
+    view = Outlook(state)
     for i in range(3):
 
         def path(t: Any, i: int = i) -> Any:
             return link_poses(tree, poses(PLANE, own + rates * t + second * t * t / 2))[i]
 
         expected = moving(path)
-        found = frames(tree, floats, crossed, a)[i]
+        found = frames(state, a)[i]
         for mine, other in zip(found, expected, strict=True):
             close(mine, other, OF_DIFFERENCES)
         for linear, angular in velocities(view, i):
             close(linear, expected.linear)
             close(angular, expected.angular)
-        spin = spins(tree, floats, crossed, a)[i]
+        spin = spins(state, a)[i]
         close(spin.angular, expected.rotation.T @ expected.spin, OF_DIFFERENCES)
         # a column is what the angle of one link against ground does to the last one's place
         J = np.array(matrix(columns(view, i), 3))
@@ -211,7 +211,7 @@ def test_angles_measured_from_ground_are_sums_of_the_hinges_angles() -> None:
 def test_driven_joints_add_what_their_motions_prescribe() -> None:
     """The first and last hinges and the slide follow functions of t, in short frames as well."""
     model = driven_limb()
-    tree, floats = walked(model, t=0.7)
+    tree = walked(model, t=0.7)
     free = [2, 3, 4, 5]
 
     def coordinates(t: Any) -> Any:
@@ -222,8 +222,7 @@ def test_driven_joints_add_what_their_motions_prescribe() -> None:
     short = shortened(tree)
     bodies = poses(LIMB, Q)
     for given in (tree, short.tree):
-        crossed = arms(given, floats, Q[free], V[free])
-        view = Outlook(given, floats, crossed)
+        view = Outlook(TreeState(given, Q[free], V[free]))
         for k, link in enumerate(link_poses(tree, bodies)):
             tip, inner = k, np.eye(4)
             if given is short.tree:
@@ -251,7 +250,7 @@ def test_an_orientation_in_space_is_seen_from_the_parent_as_its_hinge_turns() ->
     parts = (PLANE[0], PLANE[1]._replace(axis=(1, 0, 0)), PLANE[2])
     model = modelled(parts)
     model.formulation(coordinates="absolute-angle")
-    tree, floats = walked(model)
+    tree = walked(model)
     own, rates = np.array([0.4, -0.9, 0.5]), np.array([0.7, 0.3, -1.2])
     q, v = [own[0]], [rates[0]]
     ahead = poses(parts, own + 1j * TINY * rates)
@@ -266,12 +265,12 @@ def test_an_orientation_in_space_is_seen_from_the_parent_as_its_hinge_turns() ->
         np.testing.assert_allclose(of_quaternion(quaternion), turn.real, atol=1e-15)
         q += quaternion.tolist()
         v += axial(turn.real.T @ turn.imag / TINY).tolist()
-    crossed = arms(tree, floats, q, v)
-    found = frames(tree, floats, crossed)
+    state = TreeState(tree, q, v)
+    found = frames(state)
     before = np.eye(3)
     for i in range(3):
         expected = moving(lambda t, i=i: link_poses(tree, poses(parts, own + rates * t))[i])  # type: ignore[misc]
-        close(crossed[i].rotation.matrix(), before.T @ expected.rotation)
+        close(state.arms[i].rotation.matrix(), before.T @ expected.rotation)
         close(found[i].rotation, expected.rotation)
         close(found[i].origin, expected.place)
         close(found[i].linear, expected.linear)
@@ -285,12 +284,11 @@ def test_a_free_body_on_a_turntable_has_all_terms_of_coriolis() -> None:
     table, ball = (model.body(x, mass=1.0, inertia=(1, 1, 1)) for x in ("table", "ball"))
     model.revolute("hinge", between=("ground", table))
     model.free("flight", between=(table, ball))
-    tree, floats = walked(model)
     angle, rate, d = 0.4, 1.3, np.array([0.5, -0.2, 0.7])
     turn = np.array([0.1, -0.5, 0.5, 0.7])
     u, w = np.array([0.3, 0.8, -0.6]), np.array([-0.9, 0.4, 1.1])
-    crossed = arms(tree, floats, [angle, *d, *turn], [rate, *u, *w])
-    found = frames(tree, floats, crossed)[1]
+    state = TreeState(walked(model), [angle, *d, *turn], [rate, *u, *w])
+    found = frames(state)[1]
     H, R = turned((0, 0, 1), angle), of_quaternion(turn)
     c = np.array([0, 0, rate])
     velocity, bend = R @ u, R @ np.cross(w, u)
@@ -301,7 +299,7 @@ def test_a_free_body_on_a_turntable_has_all_terms_of_coriolis() -> None:
     close(found.pull, pull)
     close(found.spin, spin)
     back = (H @ R).T
-    own = spins(tree, floats, crossed)[1]
+    own = spins(state)[1]
     close(own.linear, back @ pull)
     close(own.angular, back @ spin)
 

@@ -17,7 +17,7 @@ from linegraph.kinematics.accelerations import (
     spins,
     together,
 )
-from linegraph.kinematics.arms import arms
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.spatial.inertia import Moments
 
 RNG = np.random.default_rng(11)
@@ -73,18 +73,14 @@ def test_wrenches_add_part_by_part() -> None:
 
 
 def test_ground_rests_but_for_the_weight() -> None:
-    tree, _ = walked(modelled(LIMB))
-    assert resting(tree) == Spin((0, 0, 0), (0, 0, 0), (-0.3, 0.2, 9.81))
+    assert resting(walked(modelled(LIMB)).gravity) == Spin((0, 0, 0), (0, 0, 0), (-0.3, 0.2, 9.81))
 
 
 def test_every_links_wrench_comes_from_its_own_moments_and_motion() -> None:
-    tree, floats = walked(modelled(LIMB))
-    crossed = arms(tree, floats, *LIMB_STATE)
+    state = TreeState(walked(modelled(LIMB)), *LIMB_STATE)
     a = tuple(0.1 * k for k in range(7))
-    found = inertia_forces(tree, floats, crossed, a)
-    for link, spin, (force, torque) in zip(
-        tree.links, spins(tree, floats, crossed, a), found, strict=True
-    ):
+    found = inertia_forces(state, a)
+    for link, spin, (force, torque) in zip(state.tree.links, spins(state, a), found, strict=True):
         m, (b, S) = link.moments.mass, (np.array(link.moments.first), link.moments.second)
         J = np.array(
             [[S[3] + S[5], -S[1], -S[2]], [-S[1], S[0] + S[5], -S[4]], [-S[2], -S[4], S[0] + S[3]]]

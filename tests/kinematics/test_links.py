@@ -22,11 +22,10 @@ from support.chains import (
 from support.rigid_motion import TINY, axial, of_quaternion, tensor
 
 import linegraph as lg
-from linegraph.algebra.protocol import Floats
 from linegraph.dynamics.mass_matrix import mass_matrix as derived_mass_matrix
-from linegraph.kinematics.arms import arms, coordinate_rates
 from linegraph.kinematics.links import links_in_plane, parallel, upright
 from linegraph.kinematics.state_layout import Place
+from linegraph.kinematics.tree_state import TreeState
 from linegraph.spatial.rotation import Relabel, Rotation, Turn
 
 Q, V = LIMB_STATE
@@ -45,7 +44,7 @@ def welded() -> lg.Model:
 
 
 def test_welded_bodies_are_one_link_with_the_sum_of_their_moments() -> None:
-    tree, _ = walked(welded())
+    tree = walked(welded())
     (link,) = tree.links
     assert link.name == "plate, block"
     assert link.caption == "hinge -> plate, block"
@@ -63,7 +62,7 @@ def test_a_weld_by_a_turned_frame_of_the_far_body_turns_that_body_back() -> None
     lamp = model.body("lamp", mass=1.0, mass_center=(0, 0.4, 0))
     foot = lamp.frame("foot", at=(0.1, 0, 0), axis=(0, 0, 1), angle=math.pi / 2)
     model.fixed("screw", between=("plate.tip", foot))
-    tree, _ = walked(model)
+    tree = walked(model)
     link, own = tree.bodies["lamp"]
     assert link == 0
     # the foot's x is the lamp's y: the plate's x is the lamp's y, and the plate's -y its x
@@ -74,7 +73,7 @@ def test_a_weld_by_a_turned_frame_of_the_far_body_turns_that_body_back() -> None
 
 
 def test_a_links_own_frame_has_its_joint_at_the_origin_and_the_axis_as_z() -> None:
-    tree, _ = walked(modelled(LIMB))
+    tree = walked(modelled(LIMB))
     for k, (part, at) in enumerate(zip(LIMB, link_poses(tree, poses(LIMB, Q)), strict=True)):
         if part.kind == "universal":
             continue
@@ -88,7 +87,7 @@ def test_a_links_own_frame_has_its_joint_at_the_origin_and_the_axis_as_z() -> No
 
 
 def test_moments_of_links_are_those_of_bodies_about_the_joint() -> None:
-    tree, _ = walked(modelled(LIMB))
+    tree = walked(modelled(LIMB))
     at = poses(LIMB, Q)
     assert [tree.bodies[f"b{k}"][0] for k in range(len(LIMB))] == list(range(len(LIMB)))
     for part, body, seen, link in zip(LIMB, at, link_poses(tree, at), tree.links, strict=True):
@@ -102,12 +101,10 @@ def test_moments_of_links_are_those_of_bodies_about_the_joint() -> None:
 
 
 def test_a_tree_with_masses_handed_on_has_the_same_mass_matrix() -> None:
-    tree, floats = walked(modelled(LIMB))
+    tree = walked(modelled(LIMB))
     less = tree.regrouped()
-    crossed = arms(less, floats, Q, V)
-    np.testing.assert_allclose(
-        derived_mass_matrix(less, floats, crossed), mass_matrix(LIMB, Q), atol=4e-15
-    )
+    found = derived_mass_matrix(TreeState(less, Q, V))
+    np.testing.assert_allclose(found, mass_matrix(LIMB, Q), atol=4e-15)
     # the first hinge's mass stands on ground, and what lies on its axis with it
     first = less.links[0].moments
     assert first.mass == 0
@@ -116,10 +113,10 @@ def test_a_tree_with_masses_handed_on_has_the_same_mass_matrix() -> None:
 
 
 def test_links_on_hinges_about_one_direction_stay_in_a_plane() -> None:
-    tree, _ = walked(modelled(PLANE))
+    tree = walked(modelled(PLANE))
     assert links_in_plane(tree.links) == [True, True, True]
     tilted = (PLANE[0], PLANE[1]._replace(axis=(0, 0, -1)), PLANE[2]._replace(axis=(0, 1, 0)))
-    tree, _ = walked(modelled(tilted))
+    tree = walked(modelled(tilted))
     assert links_in_plane(tree.links) == [True, True, False]
     assert [parallel(link) for link in tree.links] == [True, True, False]
     slide = (
@@ -127,7 +124,7 @@ def test_links_on_hinges_about_one_direction_stay_in_a_plane() -> None:
         Part("revolute", (0, 1, 1), parent=0),
         Part("prismatic", parent=1),
     )
-    tree, _ = walked(modelled(slide))
+    tree = walked(modelled(slide))
     # a slide does not turn and a hinge on it turns about one direction; what slides on that does not count
     assert links_in_plane(tree.links) == [False, True, False]
     driven = replace(tree.links[1], place=Place(drive=(1,)))  # type: ignore[arg-type]
@@ -135,7 +132,7 @@ def test_links_on_hinges_about_one_direction_stay_in_a_plane() -> None:
 
 
 def test_upright_is_the_direction_of_z_either_way_round() -> None:
-    link = walked(modelled(PLANE))[0].links[0]
+    link = walked(modelled(PLANE)).links[0]
     for rotation, expected in (
         (Rotation((Turn(2, 0.6, 0.8),)), True),
         (Rotation((Relabel((0, 1, 2), (1, -1, -1)),)), True),
@@ -154,7 +151,7 @@ def balls() -> lg.Model:
 
 
 def test_quaternions_are_found_in_q_and_given_length_1() -> None:
-    tree, _ = walked(balls())
+    tree = walked(balls())
     assert tree.quaternions == [(3, 4, 5, 6), (7, 8, 9, 10)]
     q = [1.0, 2.0, 3.0, 0.0, 3.0, 0.0, 4.0, 0.0, 0.0, 0.0, -2.0]
     tree.normalise(q)
@@ -162,10 +159,9 @@ def test_quaternions_are_found_in_q_and_given_length_1() -> None:
 
 
 def test_a_ball_turns_with_its_velocity_in_the_heads_axes() -> None:
-    tree, floats = walked(balls())
     q = [0.0] * 3 + [0.1, -0.7, 0.1, 0.7] + [0.5, 0.5, -0.5, 0.5]
     v = [0.3, -0.4, 0.2, 0.5, 0.7, -0.1, 0.9, -0.6, 0.8]
-    rates = np.array(coordinate_rates(tree, floats, q, v))
+    rates = np.array(TreeState(walked(balls()), q, v).coordinate_rates)
     for part, own in ((slice(3, 7), v[3:6]), (slice(7, 11), v[6:9])):
         ahead = of_quaternion(np.array(q)[part] + 1j * TINY * rates[part])
         np.testing.assert_allclose(axial(ahead.real.T @ ahead.imag / TINY), own, atol=4e-16)
@@ -173,14 +169,14 @@ def test_a_ball_turns_with_its_velocity_in_the_heads_axes() -> None:
 
 
 def test_the_tree_counts_outward_and_knows_what_it_shares() -> None:
-    tree, _ = walked(modelled(LIMB))
+    tree = walked(modelled(LIMB))
     assert tree.outward == list(range(7))
     assert not tree.coupled
     assert not tree.levelled
     assert not tree.closed
     model = modelled(PLANE)
     model.couple("j2", to="j0", ratio=-2.0, offset=0.5)
-    tree, _ = walked(model)
+    tree = walked(model)
     assert tree.coupled
     assert [q.name for q in tree.positions] == ["j0", "j1"]
     model = lg.Model("backwards")
@@ -188,7 +184,7 @@ def test_the_tree_counts_outward_and_knows_what_it_shares() -> None:
     a = model.body("a", mass=1.0)
     model.revolute("outer", between=(a, b))
     model.revolute("inner", between=("ground", a))
-    tree, _ = walked(model)
+    tree = walked(model)
     # coordinates stand in declared order, links from ground outward
     assert [q.name for q in tree.positions] == ["outer", "inner"]
     assert tree.outward == [1, 0]
@@ -197,13 +193,13 @@ def test_the_tree_counts_outward_and_knows_what_it_shares() -> None:
 def test_a_chord_closes_a_loop_and_an_unforced_one_does_not() -> None:
     model = modelled(PLANE)
     model.rod("strut", between=("ground", "b2"), length=0.6)
-    tree, _ = walked(model)
+    tree = walked(model)
     assert tree.closed
     (closure,) = tree.closures
     assert (closure.tail.link, closure.head.link) == (-1, 2)
     free = modelled(PLANE)
     free.free("six", between=("ground", "b2"))
-    tree, _ = walked(free)
+    tree = walked(free)
     # six freedoms forbid nothing
     assert [c.component.name for c in tree.closures] == ["six"]
     assert tree.closures[0].restrictions == ()
@@ -213,12 +209,11 @@ def test_a_chord_closes_a_loop_and_an_unforced_one_does_not() -> None:
 def test_coupled_joints_move_as_their_ratio_says() -> None:
     model = modelled(PLANE)
     model.couple("j2", to="j0", ratio=-2.0, offset=0.5)
-    tree, floats = walked(model)
+    state = TreeState(walked(model), [0.3, -0.4], [1.0, 2.0])
     own: Any = np.array([0.3, -0.4, -2 * 0.3 + 0.5])
-    crossed = arms(tree, Floats(), [0.3, -0.4], [1.0, 2.0])
-    assert crossed[2].rates == (-2.0,)
+    assert state.arms[2].rates == (-2.0,)
     turns = np.eye(3)
-    for arm in crossed:
+    for arm in state.arms:
         turns = turns @ np.array(arm.rotation.matrix())
     np.testing.assert_allclose(turns, poses(PLANE, own)[2][:3, :3], atol=4e-16)
-    assert coordinate_rates(tree, floats, [0.3, -0.4], [1.0, 2.0]) == [1.0, 2.0]
+    assert state.coordinate_rates == [1.0, 2.0]

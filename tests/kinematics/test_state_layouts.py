@@ -38,7 +38,7 @@ def mixed() -> lg.Model:
 
 
 def test_coordinates_stand_in_declared_order_and_quaternions_have_one_more() -> None:
-    tree, _ = walked(mixed(), u=[0.0] * 5)
+    tree = walked(mixed(), u=[0.0] * 5)
     assert names(tree.positions) == [
         *("slide", "float_x", "float_y", "float_z"),
         *("float_qx", "float_qy", "float_qz", "float_qw", "hinge"),
@@ -50,7 +50,7 @@ def test_coordinates_stand_in_declared_order_and_quaternions_have_one_more() -> 
 
 
 def test_inputs_are_efforts_then_named_ones_then_prescribed_motions() -> None:
-    tree, _ = walked(mixed(), u=[0.0, 10.0, 20.0, 30.0, 40.0])
+    tree = walked(mixed(), u=[0.0, 10.0, 20.0, 30.0, 40.0])
     # the float has no efforts unless they are asked for, and the slide is told to have none
     assert names(tree.inputs) == ["hinge", "u", "driven", "driven_rate", "driven_acceleration"]
     assert [q.unit for q in tree.inputs] == ["N*m", "N", "rad", "rad/s", "rad/s^2"]
@@ -65,7 +65,7 @@ def test_a_motion_given_in_t_has_its_derivatives() -> None:
     model = modelled(PLANE[:1])
     model.body("door", mass=1.0, inertia=(1, 1, 1))
     model.revolute("driven", between=("b0", "door"), motion="0.3*sin(2*t) + t**2")
-    tree, _ = walked(model, t=0.7)
+    tree = walked(model, t=0.7)
     (jet,) = tree.layout.drives["driven"]
     assert jet.x == pytest.approx(0.3 * math.sin(1.4) + 0.49, abs=1e-15)
     assert jet.dx == pytest.approx(0.6 * math.cos(1.4) + 1.4, abs=1e-15)
@@ -77,7 +77,7 @@ def test_chains_of_couplings_are_composed_to_the_joint_that_leads() -> None:
     model = modelled(PLANE)
     model.couple("j2", to="j1", ratio=-2.0, offset=0.5)
     model.couple("j1", to="j0", ratio=3.0, offset=0.25)
-    tree, _ = walked(model)
+    tree = walked(model)
     assert names(tree.positions) == ["j0"]
     # q2 = -2 q1 + 0.5 = -2 (3 q0 + 0.25) + 0.5
     assert tree.layout.places["j2"] == Place((Freedom(0, -6.0, 0.0),), (Freedom(0, -6.0),))
@@ -93,7 +93,7 @@ def test_a_follower_of_a_driven_joint_is_driven() -> None:
     model.body("door", mass=1.0, inertia=(1, 1, 1))
     model.revolute("driven", between=("b1", "door"), motion="t**2")
     model.couple("j1", to="driven", ratio=3.0, offset=1.0)
-    tree, _ = walked(model, t=2.0)
+    tree = walked(model, t=2.0)
     (jet,) = tree.layout.places["j1"].drive
     assert (jet.x, jet.dx, jet.ddx) == (13.0, 12.0, 6.0)
 
@@ -137,7 +137,7 @@ def test_a_motion_without_derivatives_at_a_time_is_refused_there() -> None:
     model.revolute("driven", between=("b0", "door"), motion="sqrt(t)")
     with pytest.raises(lg.ModelError, match="no finite value, rate and acceleration"):
         walked(model, t=0.0)
-    tree, _ = walked(model, t=4.0)
+    tree = walked(model, t=4.0)
     (jet,) = tree.layout.drives["driven"]
     assert (jet.x, jet.dx, jet.ddx) == (2.0, 0.25, -1 / 32)
 
@@ -162,7 +162,7 @@ def test_v_is_the_derivative_of_q_of_joints_whose_axes_are_not_carried_along(
 def test_an_angle_measured_from_ground_is_less_by_what_the_near_body_has_turned() -> None:
     model = modelled((PLANE[0], PLANE[1]._replace(axis=(0, 0, -1))))
     model.formulation(coordinates="absolute-angle")
-    tree, _ = walked(model)
+    tree = walked(model)
     place = tree.layout.places["j1"]
     assert place.level
     assert not place.in_space
@@ -177,7 +177,7 @@ def test_an_angle_measured_from_ground_is_less_by_what_the_near_body_has_turned(
 def test_a_body_on_its_inertia_edge_has_coordinates_of_its_own_name() -> None:
     model = modelled(PLANE[:1])
     model.formulation(coordinates="absolute")
-    tree, _ = walked(model)
+    tree = walked(model)
     assert names(tree.positions)[:3] == ["b0_x", "b0_y", "b0_z"]
     assert tree.layout.stems == {"b0": "b0"}
     assert tree.layout.own("b0") == tree.layout.places["b0"]
@@ -188,7 +188,7 @@ def test_a_body_on_its_inertia_edge_has_coordinates_of_its_own_name() -> None:
 def test_what_drives_a_rod_is_its_length_and_its_rates() -> None:
     model = modelled(PLANE)
     model.rod("strut", between=("ground", "b2"), length="0.6 + 0.1*t")
-    tree, _ = walked(model, t=1.0)
+    tree = walked(model, t=1.0)
     (jet,) = tree.layout.drives["strut"]
     assert isinstance(jet, Jet)
     assert (jet.x, jet.dx, jet.ddx) == (pytest.approx(0.7), 0.1, 0)

@@ -18,9 +18,6 @@ import sympy
 
 import linegraph as lg
 from linegraph.components.validation import RESERVED
-from linegraph.dynamics import orthogonality
-from linegraph.dynamics.applied_forces import efforts
-from linegraph.kinematics.arms import arms
 from linegraph.readers import modelfile, urdf
 
 if TYPE_CHECKING:
@@ -115,18 +112,11 @@ def numbers(derivation: Derivation, point: np.random.Generator) -> tuple[Any, ..
     """A state with inputs, and over floats M, h, Q and J there."""
     tree = derivation.structure
     u = point.uniform(-1, 1, len(tree.inputs)).tolist()
-    numeric = derivation.numeric(u=u)
     q = point.uniform(-1, 1, len(tree.positions)).tolist()
     tree.normalise(q)
     v = point.uniform(-1, 1, len(tree.velocities)).tolist()
-    chords = numeric.chords(q, v)
-    crossed = arms(numeric.tree, numeric.algebra, q, v)
-    active = orthogonality.generalised_forces(
-        numeric.tree, numeric.algebra, crossed, numeric.applied(q, v, driven=True)
-    )
-    Q = efforts(numeric.tree, numeric.algebra, chords, active)
-    J = chords.jacobian()
-    parts = (numeric.united_mass_matrix(q, v), numeric.bias(q, v), Q, J)
+    here = derivation.numeric(u=u).at(q, v)
+    parts = (here.mass_matrix, here.bias, here.forces, here.jacobian)
     return (q, v, u, *(np.array(part, dtype=float) for part in parts))
 
 

@@ -172,7 +172,7 @@ def test_at_another_time_what_is_prescribed_has_moved_on() -> None:
     model.revolute("driven", between=("ground", flag), motion="3*t")
     found = derived(model, Derived).numeric(t=1.0)
     assert found.tree.layout.drives["driven"][0].x == 3.0
-    later = found.at(2.0)
+    later = found.at_time(2.0)
     assert (later.t, later.tree.layout.drives["driven"][0].x) == (2.0, 6.0)
 
 

@@ -18,9 +18,8 @@ from linegraph import Model, derive
 from linegraph.components.parameters import valued
 from linegraph.dynamics import orthogonality
 from linegraph.dynamics.applied_forces import efforts
-from linegraph.dynamics.chords import equations
 from linegraph.dynamics.edge_variables import InverseScheme
-from linegraph.kinematics.arms import arms
+from linegraph.dynamics.equations import StateEquations
 from linegraph.numeric.reference import Numeric
 
 if TYPE_CHECKING:
@@ -189,8 +188,7 @@ class Reference:
         parameters = self.model.parameters.values()
         algebra: Any = self.algebra
         values = valued(parameters, algebra, lambda p: float(p.value))
-        tree = self.derivation.tree(algebra, values)
-        return Numeric(tree, self.model, algebra, values, self.derivation)
+        return Numeric(self.derivation.tree(algebra, values), self.derivation)
 
     @property
     def tree(self) -> Any:
@@ -202,12 +200,9 @@ class Reference:
         return int(self.tree.layout.mechanical)
 
     @cached_property
-    def state(self) -> tuple[list[Lane], list[Lane]]:
-        return lanes(self.q), lanes(self.v)
-
-    @cached_property
-    def crossed(self) -> Any:
-        return arms(self.tree, self.algebra, *self.state)
+    def here(self) -> StateEquations:
+        """The equations at the states."""
+        return StateEquations(self.tree, lanes(self.q), lanes(self.v))
 
     def stacked(self, rows: Any) -> Array:
         """Scalars as an array, states first."""
@@ -219,26 +214,21 @@ class Reference:
 
     @cached_property
     def mass(self) -> Array:
-        return self.stacked(self.numeric.united_mass_matrix(*self.state))
+        return self.stacked(self.here.mass_matrix)
 
     @cached_property
     def bias(self) -> Array:
-        return self.stacked(self.numeric.bias(*self.state))
+        return self.stacked(self.here.bias)
 
     @cached_property
     def forces(self) -> Array:
-        acting: Any = self.numeric.applied(*self.state, driven=True)
-        active = orthogonality.generalised_forces(self.tree, self.algebra, self.crossed, acting)
-        return self.stacked(efforts(self.tree, self.algebra, self.chords, active))
-
-    @cached_property
-    def chords(self) -> Any:
-        return self.numeric.chords(*self.state)
+        active = orthogonality.generalised_forces(self.here.state, self.here.active)
+        return self.stacked(efforts(self.here.chords, active))
 
     @cached_property
     def rates(self) -> Array:
         """q̇."""
-        return self.stacked(self.numeric.coordinate_rates(*self.state))
+        return self.stacked(self.here.coordinate_rates)
 
     @cached_property
     def solution(self) -> tuple[Array, Array]:
@@ -246,8 +236,8 @@ class Reference:
         right = self.forces - self.bias
         if not self.tree.closed:
             return np.linalg.solve(self.mass, right[..., None])[..., 0], np.zeros((len(self.t), 0))
-        J = self.stacked(self.chords.jacobian())
-        below = self.stacked(self.chords.bias())
+        J = self.stacked(self.here.jacobian)
+        below = self.stacked(self.here.constraint_bias)
         n, m = J.shape[2], J.shape[1]
         whole = np.zeros((len(self.t), n + m, n + m))
         whole[:, :n, :n] = self.mass
@@ -263,23 +253,12 @@ class Reference:
 
     def inverse(self, a: Array) -> Array:
         """What a motion takes."""
-        return self.stacked(self.numeric.inverse_dynamics(*self.state, lanes(a)))
+        return self.stacked(self.here.inverse_dynamics(lanes(a)))
 
     @cached_property
     def scheme(self) -> InverseScheme:
         a, multipliers = self.solution
-        algebra: Any = self.algebra
-        return InverseScheme(
-            self.derivation,
-            self.tree,
-            algebra,
-            dict(self.numeric.parameters),
-            self.crossed,
-            self.chords,
-            (tuple(self.state[0]), tuple(self.state[1])),
-            lanes(a),
-            list(zip(equations(self.tree), lanes(multipliers), strict=True)),
-        )
+        return InverseScheme(self.here.chords, lanes(a), lanes(multipliers))
 
     @cached_property
     def network(self) -> dict[str, tuple[Array, Array]]:
@@ -290,21 +269,19 @@ class Reference:
     @cached_property
     def energy(self) -> Array:
         """Kinetic energy, potential energy, and what networks store; a column each."""
-        kinetic, potential = orthogonality.energy(self.tree, self.algebra, self.crossed)
-        acting: Any = self.numeric.applied(*self.state, driven=False)
-        exchange = self.numeric.exchange(*self.state)
-        stored = exchange.energy() if exchange else 0
-        return self.stacked([kinetic, potential + acting.potential, stored])
+        kinetic, potential = orthogonality.energy(self.here.state)
+        stored = self.here.networks.energy() if self.here.networks else 0
+        return self.stacked([kinetic, potential + self.here.passive.potential, stored])
 
     def kept(self, keys: Sequence[tuple[str, str]]) -> Array:
         """Across and through variables that need no rates, and components' own states; a column each."""
-        exchange = self.numeric.exchange(*self.state)
+        exchange = self.here.networks
         assert exchange is not None
         network = exchange.network
         found = []
         for kind, edge in keys:
             if (kind, edge) in network.places:
-                found.append(self.state[1][self.first + network.places[(kind, edge)]])
+                found.append(self.here.v[self.first + network.places[(kind, edge)]])
             else:
                 found.append(exchange.across(edge) if kind == "X" else exchange.through(edge))
         return self.stacked(found)

@@ -16,7 +16,7 @@ from linegraph.cli.main import main
 from linegraph.cli.options import FUNCTIONS
 from linegraph.emission.emit import module_for, render
 from linegraph.programs.register import PROGRAMS
-from linegraph.programs.workspace import Functions
+from linegraph.programs.workspace import Workspace
 from linegraph.readers import modelfile
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def test_each_alone_is_a_module(file: str, function: str, tmp_path: Path) -> Non
     """What a function calls is there, so that both languages load it; twins included."""
     model = modelfile.read(file)
     try:
-        made = PROGRAMS[function](Functions(derive(model), folded=False))
+        made = PROGRAMS[function](Workspace(derive(model), folded=False))
     except ModelError as refusal:
         with pytest.raises(ModelError, match=re.escape(str(refusal))):
             render(model, name="one", only=[function])

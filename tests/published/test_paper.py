@@ -14,12 +14,9 @@ import pytest
 import sympy
 
 import linegraph as lg
-from linegraph.algebra.protocol import Floats
 from linegraph.dynamics import orthogonality
-from linegraph.dynamics.applied_forces import applied
 from linegraph.dynamics.edge_variables import InverseScheme
 from linegraph.errors import ModelError
-from linegraph.kinematics.arms import arms
 from linegraph.paper.joint_form import paper_matrices
 from linegraph.paper.star_form import equations, printed_matrices
 from linegraph.paper.star_inverse import star_variables
@@ -167,7 +164,7 @@ def joint_form_error(seed: int) -> float:
     if numeric is None:
         return 0.0
     q, v = state(numeric, np.random.default_rng([seed, 1]))
-    paper = paper_matrices(numeric.tree, Floats(), q, v)
+    paper = paper_matrices(numeric.at(q, v).state)
     return against_the_recursive_route(numeric, paper, q, v)
 
 
@@ -192,10 +189,8 @@ def test_prescribed_motion_is_free_motion_that_happens(seed: int) -> None:
     q, v = state(given, np.random.default_rng([seed, 1]))
     a = np.random.default_rng([seed, 2]).normal(size=len(v))
     expected = found.inverse_dynamics(x + q, dx + v, [*ddx, *a])[6:]
-    for matrices in (
-        paper_matrices(given.tree, Floats(), q, v),
-        printed_matrices(given.tree, Floats(), q, v),
-    ):
+    here = given.at(q, v).state
+    for matrices in (paper_matrices(here), printed_matrices(here)):
         torque = np.array(matrices.A, dtype=float) @ a - np.array(matrices.B, dtype=float)
         assert error(torque, expected) < TOLERANCE
 
@@ -204,7 +199,7 @@ def test_columns_of_prescribed_joints_are_empty() -> None:
     numeric = drawn(3, ("revolute",), basement=moving, count=4)
     assert numeric is not None
     q, v = state(numeric, np.random.default_rng(3))
-    paper = paper_matrices(numeric.tree, Floats(), q, v)
+    paper = paper_matrices(numeric.at(q, v).state)
     (basement,) = (i for i, link in enumerate(numeric.tree.links) if link.place.drive)
     assert all(row[basement] == (0, 0, 0) for row in (*paper.S, *paper.K))
     assert len(paper.S) == 4
@@ -215,9 +210,9 @@ def test_a_first_moment_without_mass_has_no_centre() -> None:
     model = lg.Model("odd")
     body = model.body("odd", first_moment=(1, 0, 0), inertia=(1, 1, 1))
     model.revolute("hinge", between=("ground", body))
-    tree = lg.derive(model).numeric().tree
+    here = lg.derive(model).numeric().at([0.1], [0.2])
     with pytest.raises(ModelError, match="no mass"):
-        paper_matrices(tree, Floats(), [0.1], [0.2])
+        paper_matrices(here.state)
 
 
 # ---- as printed
@@ -229,7 +224,7 @@ def printed(
     numeric = drawn(seed, kinds, alone=True, **options)
     assert numeric is not None
     q, v = state(numeric, np.random.default_rng([seed, 1]))
-    return numeric, q, v, printed_matrices(numeric.tree, Floats(), q, v)
+    return numeric, q, v, printed_matrices(numeric.at(q, v).state)
 
 
 def printed_error(seed: int, kinds: Sequence[str], **options: Any) -> float:
@@ -271,7 +266,7 @@ def test_the_star_tree_is_the_joint_tree(seed: int) -> None:
     size = len(paper.chords)
     assert len(paper.branches) == size == 2 * len(paper.bodies) - 1
     assert np.array_equal(m["P"] @ m["H"], np.eye(size))
-    joints = paper_matrices(numeric.tree, Floats(), q, v)
+    joints = paper_matrices(numeric.at(q, v).state)
     basement = [i for i, link in enumerate(numeric.tree.links) if link.place.drive]
     h = np.delete(np.delete(np.array(joints.H), basement, 0), basement, 1)
     outer, inner = range(0, size, 2), range(1, size, 2)
@@ -339,9 +334,9 @@ def test_one_body_on_the_basement(basement: Any) -> None:
     for k in range(2):
         body = model.body(f"b{k}", mass=1.0, inertia=(1, 1, 1))
         model.revolute(f"j{k}", between=(base, body))
-    numeric = lg.derive(model).numeric(t=TIME)
+    here = lg.derive(model).numeric(t=TIME).at([0.1, 0.2], [0.3, 0.4])
     with pytest.raises(ModelError, match="carries 2 bodies"):
-        printed_matrices(numeric.tree, Floats(), [0.1, 0.2], [0.3, 0.4])
+        printed_matrices(here.state)
 
 
 @pytest.mark.parametrize("seed", range(10))
@@ -355,14 +350,12 @@ def test_external_forces_and_joint_efforts(seed: int) -> None:
     model.spring("coil", joint="j0", stiffness=7.0, length=0.2)
     numeric = lg.derive(model).numeric(t=TIME)
     q, v = state(numeric, rng)
-    algebra = Floats(t=TIME)
-    crossed = arms(numeric.tree, algebra, q, v)
-    acting = applied(model, numeric.tree, algebra, {}, crossed, tuple(q), tuple(v), driven=False)
-    expected = orthogonality.inverse_dynamics(numeric.tree, algebra, crossed, None, acting)
-    paper = printed_matrices(numeric.tree, algebra, q, v, acting)
+    here = numeric.at(q, v)
+    expected = orthogonality.inverse_dynamics(here.state, None, here.passive)
+    paper = printed_matrices(here.state, here.passive)
     assert error([-b for b in paper.B], expected) < TOLERANCE
     assert error(expected, numeric.bias(q, v)) == 0
-    alone = orthogonality.inverse_dynamics(numeric.tree, algebra, crossed)
+    alone = orthogonality.inverse_dynamics(here.state)
     assert error(expected, alone) > 1e-3
 
 
@@ -412,16 +405,7 @@ def test_the_papers_inverse_scheme_is_the_recursive_one(seed: int) -> None:
         for row, slide in zip(paper.S, paper.K, strict=True)
     ]
     assert error(projected, numeric.inverse_dynamics(q, v, a)) < TOLERANCE
-    scheme = InverseScheme(
-        numeric.derivation,
-        numeric.tree,
-        numeric.algebra,
-        numeric.parameters,
-        arms(numeric.tree, numeric.algebra, q, v),
-        numeric.chords(q, v),
-        (tuple(q), tuple(v)),
-        a,
-    )
+    scheme = InverseScheme(numeric.chords(q, v), a)
     moving = [link for link in numeric.tree.links if not link.place.drive]
     forces = {link.name: scheme.joints[link.joint.name].force for link in moving}
     for k, body in enumerate(paper.bodies):

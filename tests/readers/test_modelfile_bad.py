@@ -322,6 +322,7 @@ BODIES = {
     "both_turns": instead(
         'at = [0, 0, "L"]', "rpy = [0, 0, 1], axis = [0, 0, 1]", "rpy or axis, not both"
     ),
+    "turn_without_axis": instead('at = [0, 0, "L"]', "angle = 0.7", "no axis to turn about"),
     "frame_called_mass_center": instead("frame.tip", "frame.mass_center", "name is taken"),
     "body_called_ground": after("[body.ground]\nmass = 1\n", 1, "[body.ground]", "taken"),
     "body_without_name": after('[body.""]\nmass = 1\n', 1, "a name is needed"),

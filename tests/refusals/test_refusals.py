@@ -224,6 +224,22 @@ def test_an_inertia_matrix_must_be_finite(wrong: float) -> None:
             lambda: Model("m").ground.frame("f", axis=(0, 0, 0), angle=1.0),
             'frame "ground.f": the axis has length zero; give a direction such as (0, 0, 1)',
         ),
+        (
+            lambda: Model("m").ground.frame("f", angle=0.7),
+            'frame "ground.f": has an angle but no axis to turn about; give both, or rpy',
+        ),
+        (
+            lambda: Model("m").ground.frame("f", rpy=(0, 0, 0), angle=0.7),
+            'frame "ground.f": has an angle but no axis to turn about; give both, or rpy',
+        ),
+        (
+            lambda: Model("m").ground.frame("f", rpy=(0, 0, 1), axis=(0, 0, 1)),
+            'frame "ground.f": give rpy or axis, not both',
+        ),
+        (
+            lambda: Model("m").ground.frame("f", rpy=(0, 0, 1), rotation=np.eye(3)),
+            'frame "ground.f": give rpy or rotation, not both',
+        ),
     ],
 )
 def test_numbers_must_make_sense(build: Callable[[], Any], message: str) -> None:

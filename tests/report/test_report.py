@@ -298,7 +298,7 @@ def printed_mass_matrix_and_bias_are_those_of_the_derivation(name: str) -> None:
     known = walked(section, values)
     reader = Reader(known)
     printed = equations_in(section)
-    M, h = numeric.united_mass_matrix(q, v), numeric.bias(q, v)
+    M, h = numeric.mass_matrix(q, v), numeric.bias(q, v)
     size = max(1e-9, *(abs(x) for row in M for x in row))
     for i, row in enumerate(M):
         for j, x in enumerate(row):
@@ -367,15 +367,8 @@ def printed_reactions_are_those_of_the_derivation(name: str) -> None:
 
 def scheme_of(d: lg.Derivation, q: list[float], v: list[float], a: list[float]) -> Any:
     from linegraph.dynamics.edge_variables import InverseScheme
-    from linegraph.kinematics.arms import arms
 
-    numeric = d.numeric()
-    crossed = arms(numeric.tree, numeric.algebra, q, v)
-    state = (tuple(q), tuple(v))
-    chords = numeric.chords(q, v)
-    return InverseScheme(
-        d, numeric.tree, numeric.algebra, numeric.parameters, crossed, chords, state, a
-    )
+    return InverseScheme(d.numeric().chords(q, v), a)
 
 
 # ---- topological equations

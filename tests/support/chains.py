@@ -159,12 +159,11 @@ def formulated(model: lg.Model) -> Formulation:
 
 def walked(
     model: lg.Model, parameters: Mapping[str, float] | None = None, **arguments: Any
-) -> tuple[KinematicTree, Floats]:
+) -> KinematicTree:
     """The links of a model over floats: at a time t, for inputs u."""
     system = model.system()
-    algebra = Floats(**arguments)
     trees = formulate(system, system_graph(system))
-    return kinematic_tree(system, trees, algebra, parameters or {}), algebra
+    return kinematic_tree(system, trees, Floats(**arguments), parameters or {})
 
 
 def link_poses(tree: KinematicTree, bodies: Sequence[Array]) -> list[Array]:

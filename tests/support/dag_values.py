@@ -24,6 +24,7 @@ UNARY: dict[str, Callable[[Any], Any]] = {
     "sin": math.sin,
     "cos": math.cos,
     "sqrt": math.sqrt,
+    "tanh": math.tanh,
 }
 
 
