@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
 
-class Choices(TypedDict, total=False):
+class EmitChoices(TypedDict, total=False):
     """The keywords of `emit`; all may be left out.
 
     Attributes:
@@ -47,10 +47,10 @@ class Choices(TypedDict, total=False):
 
 
 class Chosen(NamedTuple):
-    """`Choices` with all that was left out.
+    """`EmitChoices` with all that was left out.
 
     Attributes:
-        folded, functions, only, frames, progress, warn: as in `Choices`.
+        folded, functions, only, frames, progress, warn: as in `EmitChoices`.
         options: those that concern how a language is written.
         asked: the names of options that differ from their defaults.
     """
@@ -84,7 +84,7 @@ class Chosen(NamedTuple):
         return chosen
 
 
-def chosen(choices: Choices) -> Chosen:
+def chosen(choices: EmitChoices) -> Chosen:
     """All choices.
 
     Raises:

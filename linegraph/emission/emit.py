@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Unpack
 
 import codegen
-from linegraph.emission.choices import Choices, chosen
+from linegraph.emission.choices import EmitChoices, chosen
 from linegraph.errors import ModelError
 from linegraph.files import write_all
 from linegraph.model.system import placed
@@ -43,7 +43,7 @@ def emit(
     name: str | None = None,
     languages: Iterable[str] | None = None,
     tests: bool = False,
-    **choices: Unpack[Choices],
+    **choices: Unpack[EmitChoices],
 ) -> list[Path]:
     """Derive a model and write its functions as source files.
 
@@ -55,7 +55,7 @@ def emit(
         tests: also write golden vectors: programs that compare the written functions with independent
             results.
         **choices: ``folded``, ``functions``, ``only``, ``frames``, ``progress``, ``warn``; for C ``trig``,
-            ``batch``, ``real``, ``prefix``, ``cmake``, ``arduino``, ``report``. See `Choices`.
+            ``batch``, ``real``, ``prefix``, ``cmake``, ``arduino``, ``report``. See `EmitChoices`.
 
     Returns:
         The paths of the files written. Nothing is written unless everything could be rendered.
@@ -81,7 +81,7 @@ def render(
     name: str | None = None,
     languages: Iterable[str] | None = None,
     tests: bool = False,
-    **choices: Unpack[Choices],
+    **choices: Unpack[EmitChoices],
 ) -> dict[str, str]:
     """Render the files that `emit` writes.
 

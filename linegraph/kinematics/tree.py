@@ -57,6 +57,8 @@ def under_inputs(tree: KinematicTree, formulation: Formulation, algebra: Algebra
         ModelError: a prescribed motion has no value or no derivative there.
     """
     layout = layout_of(tree.system, formulation, algebra, tree.parameters)
+    # a link's joint may be called otherwise than the joint that it is made of
+    names = {id(place): name for name, place in tree.layout.places.items()}
     ends = {
         name: replace(end, drive=layout.drives.get(name, ())) for name, end in tree.ends.items()
     }
@@ -64,7 +66,7 @@ def under_inputs(tree: KinematicTree, formulation: Formulation, algebra: Algebra
         tree,
         algebra=algebra,
         layout=layout,
-        links=tuple(replace(x, place=layout.places[x.joint.name]) for x in tree.links),
+        links=tuple(replace(x, place=layout.places[names[id(x.place)]]) for x in tree.links),
         ends=ends,
         closures=tuple(ends[closure.component.name] for closure in tree.closures),
     )

@@ -20,7 +20,7 @@ from linegraph.kinematics import tangent_space as tangent
 from linegraph.programs import loop_derivatives as closed_derivatives
 from linegraph.programs import networks as network_programs
 from linegraph.programs import pivots
-from linegraph.programs.loops import independent
+from linegraph.programs.independent import independent
 from linegraph.programs.slopes import Columns, matrix, of_motion, turned, variables
 
 if TYPE_CHECKING:

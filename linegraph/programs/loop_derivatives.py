@@ -25,7 +25,8 @@ from linegraph.ir.program import Program, Result, Routine
 from linegraph.ir.statuses import CONTRADICTION, NOT_DETERMINED, SINGULAR_INERTIA, SINGULAR_POSITION
 from linegraph.kinematics import tangent_space as tangent
 from linegraph.numeric.loop_closure import at_some_time
-from linegraph.programs.loops import Algorithm, assembly, independent, routine
+from linegraph.programs.independent import assembly, independent
+from linegraph.programs.loop_routines import Algorithm, routine
 from linegraph.programs.slopes import columns, matrix, of_motion, turned, variables
 
 if TYPE_CHECKING:

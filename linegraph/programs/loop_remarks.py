@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from linegraph.programs.loops import assembly
+from linegraph.programs.independent import assembly
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -23,8 +23,8 @@ from linegraph.ir.statuses import counted
 from linegraph.kinematics.frame_trees import seat_of, tipped
 from linegraph.kinematics.tree_state import TreeState
 from linegraph.kinematics.twists import Outlook, columns, matrix
-from linegraph.programs import loops as closed_programs
-from linegraph.programs import pivots
+from linegraph.programs import independent as independents
+from linegraph.programs import loop_routines, pivots
 from linegraph.programs.kinematics import both, shortest
 
 if TYPE_CHECKING:
@@ -194,11 +194,11 @@ def _closed(f: Workspace, function: str) -> _Dynamics:
     Raises:
         ModelError: there are none, or too few independent velocities.
     """
-    made = {program.name: program for program in closed_programs.reduction(f)}
+    made = {program.name: program for program in loop_routines.reduction(f)}
     if not made:
         problem = "it has constraints, and its equations are not reduced to independent coordinates"
         raise _refused(f, function, problem)
-    places = [v for _, v in closed_programs.independent(f)]
+    places = [v for _, v in independents.independent(f)]
     k, n, rows = len(places), len(f.v), ROWS[function]
     if k < rows:
         left = "1 independent velocity" if k == 1 else f"{k} independent velocities"

@@ -14,7 +14,7 @@ from linegraph.ir.program import Argument, Call, Guards, Module, Program, Quanti
 from linegraph.ir.prologue import COUNT, with_prologue
 from linegraph.ir.sums import with_sums_collected
 from linegraph.programs import derivatives as derivative_programs
-from linegraph.programs import division, pivots
+from linegraph.programs import division, loop_routines, pivots
 from linegraph.programs import edges as edge_programs
 from linegraph.programs import identification as parameter_programs
 from linegraph.programs import kinematics as kinematic_programs
@@ -292,13 +292,13 @@ PROGRAMS: dict[str, Maker] = {
     "inverse_dynamics": lambda f: (_inverse_dynamics(f),),
     "constraints": closed_programs.constraints,
     "forward_dynamics": lambda f: (
-        closed_programs.forward_dynamics(f) if f.tree.closed else (_forward_dynamics(f),)
+        loop_routines.forward_dynamics(f) if f.tree.closed else (_forward_dynamics(f),)
     ),
     "coordinate_rates": lambda f: (_coordinate_rates(f),),
     "energy": lambda f: (_energy(f),),
     "rhs": network_programs.rhs,
-    "project": closed_programs.project,
-    "reduction": closed_programs.reduction,
+    "project": loop_routines.project,
+    "reduction": loop_routines.reduction,
     "across": edge_programs.across,
     "reactions": edge_programs.reactions,
     "drives": edge_programs.drives,

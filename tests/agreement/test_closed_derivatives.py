@@ -21,8 +21,8 @@ from support.emitted import load
 import linegraph as lg
 from linegraph import ModelError, derive
 from linegraph.emission.emit import render
+from linegraph.programs.independent import independent
 from linegraph.programs.loop_derivatives import free_changes
-from linegraph.programs.loops import independent
 from linegraph.programs.workspace import Workspace
 
 if TYPE_CHECKING:

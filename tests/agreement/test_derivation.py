@@ -28,6 +28,7 @@ from linegraph.kinematics.tree_state import TreeState
 from linegraph.numeric.reference import Numeric
 from linegraph.paper.joint_form import paper_matrices
 from linegraph.programs.register import module_of
+from linegraph.programs.request import Request
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -360,7 +361,7 @@ def test_the_papers_equations_in_matrix_form() -> None:
 @FEW
 def test_programs_over_the_dag_have_the_numbers_of_the_floats(seed: int) -> None:
     spec, derivation, numeric, states = case(seed)
-    module = module_of(derivation, "m", folded=True, about=())
+    module = module_of(derivation, "m", Request(folded=True))
     actuated = [velocity for velocity, _ in numeric.tree.layout.efforts]
     for q, v, a in states:
         q_, v_, a_ = floats(q), floats(v), floats(a)
@@ -395,7 +396,7 @@ LABELS = {
 @pytest.mark.parametrize("name", LABELS)
 def test_nodes_are_labelled_with_the_part_they_were_derived_for(name: str) -> None:
     """What comments in emitted code are made of: no operation without a label."""
-    module = module_of(derive(symbolic_model()), "m", folded=True, about=())
+    module = module_of(derive(symbolic_model()), "m", Request(folded=True))
     program = next(program for program in module.programs if program.name == name)
     roots = [entry for result in program.results for entry in result.entries]
     labels = {n.label for n in dag_values.reached(roots) if n.op not in ("symbol", "neg")}

@@ -23,8 +23,8 @@ from sympy.polys.matrices import DomainMatrix
 import linegraph as lg
 from linegraph import Model, ModelError
 from linegraph.emission.emit import render
+from linegraph.programs.independent import independent
 from linegraph.programs.loop_derivatives import free_changes
-from linegraph.programs.loops import independent
 from linegraph.programs.workspace import Workspace
 
 if TYPE_CHECKING:

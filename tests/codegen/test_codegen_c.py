@@ -16,7 +16,7 @@ from support.compiled import COMPILERS, WARNINGS, Compiled, Failed, available
 import codegen
 from codegen import c
 from linegraph.ir.dag import Dag
-from linegraph.ir.program import Argument, Call, Check, Module, Quantity, Result, assemble
+from linegraph.ir.program import Argument, Call, Check, Guards, Module, Quantity, Result, assemble
 from linegraph.ir.statuses import NOT_FINITE_INPUT
 
 if TYPE_CHECKING:
@@ -130,8 +130,12 @@ def failing() -> Module:
     dag = Dag()
     x, y = (dag.symbol("q", i) for i in (0, 1))
     result = (Result("y_out", (1,), (x / y,), "a quotient"),)
-    inner = assemble("inner", "", (samples.Q,), result, (Check(y, 0, 3, "y is not positive"),))
-    outer = assemble("outer", "", (samples.Q,), result, (Check(x, 1, 7, "x is not above 1"),))
+    inner = assemble(
+        "inner", "", (samples.Q,), result, Guards((Check(y, 0, 3, "y is not positive"),))
+    )
+    outer = assemble(
+        "outer", "", (samples.Q,), result, Guards((Check(x, 1, 7, "x is not above 1"),))
+    )
     local = Argument("y_in", 1, "")
     outer = replace(outer, calls=(Call("inner", ("q",), (local,)),))
     free = assemble("free", "", (samples.Q,), (Result("z", (1,), (Dag().symbol("y_in", 0),), ""),))

@@ -10,7 +10,7 @@ import pytest
 from codegen.printer import PrintedBody, Syntax, number, print_program
 from linegraph.ir.dag import Dag, Node, Operand
 from linegraph.ir.functions import ARITY
-from linegraph.ir.program import Argument, Check, Program, Result, assemble
+from linegraph.ir.program import Argument, Check, Guards, Program, Result, assemble
 
 PLAIN = Syntax(
     before="",
@@ -24,7 +24,9 @@ ARGUMENTS = tuple(Argument(name, None, "") for name in "abcdqp")
 
 
 def assembled(*entries: Operand, checks: tuple[Check, ...] = ()) -> Program:
-    return assemble("f", "", ARGUMENTS, (Result("y", (len(entries),), entries, ""),), checks)
+    return assemble(
+        "f", "", ARGUMENTS, (Result("y", (len(entries),), entries, ""),), Guards(checks)
+    )
 
 
 def printed(*entries: Operand, checks: tuple[Check, ...] = ()) -> PrintedBody:

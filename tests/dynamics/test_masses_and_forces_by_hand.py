@@ -12,7 +12,6 @@ from support.chains import (
     LIMB_STATE,
     PLANE,
     Part,
-    formulated,
     jacobian,
     link_poses,
     mass_matrix,
@@ -38,7 +37,6 @@ from linegraph.dynamics.regularity import (
     massless,
     refusal,
     require_motion,
-    sample_tree,
 )
 from linegraph.kinematics.tree_state import TreeState
 from linegraph.spatial.placement import Placement
@@ -347,6 +345,6 @@ def test_a_sample_of_a_tree_has_the_parameters_own_values() -> None:
     mass = model.parameter("m", 2.5)
     bob = model.body("bob", mass=mass, mass_center=(1, 0, 0))
     model.revolute("hinge", between=("ground", bob))
-    tree = sample_tree(model.system(), formulated(model))
+    tree = lg.derive(model).sample
     assert tree.links[0].moments.mass == 2.5
     assert link_of(tree, 0) is tree.links[0]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from support.plain_values import value
 
-from linegraph.ir.program import Argument, Program, Result, assemble
+from linegraph.ir.program import Argument, Guards, Program, Result, assemble
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -27,7 +27,7 @@ def program(*entries: Any, name: str = "f", checks: tuple[Check, ...] = (), **mo
     """A program of q and p with one result."""
     given = Argument("q", 4, "coordinates"), Argument("p", None, "parameters")
     result = Result("y", (len(entries),), entries, "results")
-    return assemble(name, "", given, (result,), checks, **more)
+    return assemble(name, "", given, (result,), Guards(checks, **more))
 
 
 def returned(program: Program, at: Mapping[Any, Any]) -> list[Any]:

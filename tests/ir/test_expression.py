@@ -13,7 +13,7 @@ from support.dag_values import reached, value, values
 from linegraph import ModelError
 from linegraph.ir.dag import Dag, Node
 from linegraph.ir.functions import ARITY, of_numbers
-from linegraph.ir.program import INLINE_LIMIT, Argument, Check, Program, Result, assemble
+from linegraph.ir.program import INLINE_LIMIT, Argument, Check, Guards, Program, Result, assemble
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -28,7 +28,7 @@ def symbols(dag: Dag) -> list[Any]:
 
 def program(*entries: Any, checks: tuple[Check, ...] = ()) -> Program:
     result = Result("r", (len(entries),), entries, "results")
-    return assemble("f", "A function.", ARGUMENTS, (result,), checks)
+    return assemble("f", "A function.", ARGUMENTS, (result,), Guards(checks))
 
 
 # ---- simplification at construction

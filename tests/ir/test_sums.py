@@ -18,7 +18,7 @@ import codegen
 from linegraph import Model
 from linegraph.emission.emit import module_for, render
 from linegraph.ir.dag import Dag, Node
-from linegraph.ir.program import Argument, Check, Program, Result, assemble
+from linegraph.ir.program import Argument, Check, Guards, Program, Result, assemble
 from linegraph.ir.sums import collected
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 def program_of(*entries: Any, checks: tuple[Check, ...] = ()) -> Program:
     given = (Argument("x", 8, ""), Argument("p", None, ""))
-    return assemble("f", "", given, (Result("y", (len(entries),), entries, ""),), checks)
+    return assemble("f", "", given, (Result("y", (len(entries),), entries, ""),), Guards(checks))
 
 
 def roots_of(program: Program) -> list[Any]:

@@ -15,6 +15,7 @@ from linegraph.ir.program import Program
 from linegraph.ir.prologue import PREPARED, PREPARED_PREFIX, is_prepared
 from linegraph.kinematics.frame_trees import NamedFrame
 from linegraph.programs.register import OF_FRAMES, ON_REQUEST, PROGRAMS, module_of
+from linegraph.programs.request import Request
 from linegraph.verification.golden.beside import ANYWHERE, beside
 from linegraph.verification.golden.beside import OF_FRAMES as ENDINGS
 from linegraph.verification.golden.references import REFERENCES
@@ -125,7 +126,7 @@ def derivation(name: str, *options: bool) -> lg.Derivation:
 def asked(name: str, key: str) -> Module:
     """The module of one function of a model, of a frame where it is of frames."""
     frames = [NamedFrame("tip", FRAMES[name])] if key in OF_FRAMES and name in FRAMES else []
-    return module_of(derivation(name), "one", folded=False, about=(), only=(key,), frames=frames)
+    return module_of(derivation(name), "one", Request(only=(key,), frames=frames))
 
 
 @cache
@@ -134,7 +135,7 @@ def whole(name: str, *options: bool) -> Module:
     further = [key for key in ON_REQUEST if key not in REFUSED[name]]
     frames = [NamedFrame("tip", FRAMES[name])] if name in FRAMES else []
     made = derivation(name, *options)
-    return module_of(made, "all", folded=False, about=(), wanted=further, frames=frames)
+    return module_of(made, "all", Request(wanted=further, frames=frames))
 
 
 def names(module: Module) -> set[str]:
@@ -171,7 +172,7 @@ def test_every_function_is_emitted_alone_or_refused(name: str, key: str) -> None
 
 @pytest.mark.parametrize("name", MODELS)
 def test_unasked_all_but_what_is_on_request_is_emitted(name: str) -> None:
-    found = names(module_of(derivation(name), "plain", folded=False, about=()))
+    found = names(module_of(derivation(name), "plain"))
     assert not found & {*ON_REQUEST}
     assert not any(x.startswith(PREPARED_PREFIX) for x in found)
     expected = {*PROGRAMS} - {*ON_REQUEST} - REFUSED[name] - {"reduction"}
@@ -181,7 +182,7 @@ def test_unasked_all_but_what_is_on_request_is_emitted(name: str) -> None:
 @pytest.mark.parametrize("key", OF_FRAMES)
 def test_functions_of_frames_want_a_frame(key: str) -> None:
     with pytest.raises(ModelError, match="name a frame"):
-        module_of(derivation("arm"), "one", folded=False, about=(), only=(key,))
+        module_of(derivation("arm"), "one", Request(only=(key,)))
 
 
 def test_sets_name_functions_that_there_are_and_each_once() -> None:

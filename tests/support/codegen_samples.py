@@ -9,7 +9,17 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from linegraph.ir.dag import ADD, DIV, MUL, NEG, SUB, SYMBOL, Dag, Node, Operand
-from linegraph.ir.program import Argument, Call, Check, Module, Program, Quantity, Result, assemble
+from linegraph.ir.program import (
+    Argument,
+    Call,
+    Check,
+    Guards,
+    Module,
+    Program,
+    Quantity,
+    Result,
+    assemble,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -93,12 +103,14 @@ def solve(calls: str, arguments: tuple[Argument, ...]) -> Program:
         "Accelerations: solve M a = Q - h.",
         (*arguments, U),
         (Result("a", (2,), (first, second), "the accelerations"),),
-        (Check(a, 0, 1, SINGULAR), Check(pivot, 1e-12 * c, 1, SINGULAR)),
-        (
-            Call(
-                calls,
-                tuple(argument.name for argument in arguments),
-                (Argument("M", 4, "the mass matrix"), Argument("h", 2, "the bias")),
+        Guards(
+            (Check(a, 0, 1, SINGULAR), Check(pivot, 1e-12 * c, 1, SINGULAR)),
+            (
+                Call(
+                    calls,
+                    tuple(argument.name for argument in arguments),
+                    (Argument("M", 4, "the mass matrix"), Argument("h", 2, "the bias")),
+                ),
             ),
         ),
     )
@@ -336,8 +348,8 @@ def hostile(text: str) -> Module:
         (Quantity("k", text, text, 1.0),),
         False,
         (
-            assemble("mass_matrix", text, arguments, (M,), (check,)),
-            assemble("square", f"Text: {text}", arguments, (M,), (check,)),
+            assemble("mass_matrix", text, arguments, (M,), Guards((check,))),
+            assemble("square", f"Text: {text}", arguments, (M,), Guards((check,))),
         ),
     )
 

@@ -25,6 +25,7 @@ from linegraph.ir.program import Routine
 from linegraph.numeric.assembly import consistent
 from linegraph.programs.frame_names import named_frames
 from linegraph.programs.register import OF_FRAMES, PROGRAMS, module_of
+from linegraph.programs.request import Request
 from linegraph.programs.tree_costs import trees
 from linegraph.readers import modelfile, urdf
 from linegraph.readers.modelfile.starter import starter
@@ -151,12 +152,12 @@ def functions_of(derivation: Derivation) -> Module:
         if key in OF_FRAMES and not own:
             continue
         try:
-            module_of(derivation, "m", folded=False, about=(), only=(key,), frames=own)
+            module_of(derivation, "m", Request(only=(key,), frames=own))
         except ModelError:
             continue  # the model has none of the kind, M is singular, or a frame cannot move so
         able.append(key)
     assert able
-    return module_of(derivation, "m", folded=False, about=CONVENTIONS, only=able, frames=frames)
+    return module_of(derivation, "m", Request(only=able, frames=frames), CONVENTIONS)
 
 
 def emitted(derivation: Derivation) -> None:

@@ -25,6 +25,7 @@ from linegraph.ir.golden_vectors import CONSTANTS, RETURNED
 from linegraph.ir.program import Routine
 from linegraph.programs.frame_names import named_frames
 from linegraph.programs.register import OF_FRAMES, PROGRAMS, module_of
+from linegraph.programs.request import Request
 from linegraph.verification import golden
 from linegraph.verification.golden import states as written
 from linegraph.verification.golden.beside import beside
@@ -90,7 +91,7 @@ def subject(model: Model) -> Subject:
         if key in OF_FRAMES and not own:
             continue
         with contextlib.suppress(ModelError):  # it has none of the kind
-            module_of(derivation, NAME, folded=False, about=(), only=(key,), frames=own)
+            module_of(derivation, NAME, Request(only=(key,), frames=own))
             able.append(key)
     module, vectors = _compared(derivation, able, frames)
     files = codegen.render(module, "c") | codegen.render_tests(module, vectors, "c")
@@ -102,7 +103,7 @@ def _compared(
 ) -> tuple[Module, Vectors]:
     """The functions and their golden vectors; without operational space where a frame cannot move so."""
     try:
-        module = module_of(derivation, NAME, folded=False, about=(), only=able, frames=frames)
+        module = module_of(derivation, NAME, Request(only=able, frames=frames))
         return module, golden.vectors(derivation, module, frames=frames)
     except ModelError:
         less = [key for key in able if not key.startswith("operational")]

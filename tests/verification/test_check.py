@@ -346,7 +346,7 @@ def missed(
     from linegraph.verification.checking import run as running
 
     derivation = lg.derive(model)
-    module = module_of(derivation, "checked", folded=False, about=())
+    module = module_of(derivation, "checked")
     points = {s: running._points(derivation, s) for s in (0, 1)}
     monkeypatch.setattr(running, "module_of", lambda *_, **__: module)
     monkeypatch.setattr(running, "_points", lambda _, s: points[s])
