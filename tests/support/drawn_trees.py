@@ -1,4 +1,4 @@
-"""Random trees at a random state: for the Newton-Euler oracle, and as links over floats or a DAG."""
+"""Random trees at a random state, for the Newton-Euler oracle and as links over floats or a DAG."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Drawn(NamedTuple):
         return tree, floats, arms(tree, floats, self.q.tolist(), self.v.tolist())
 
     def over_dag(self, function: Callable[..., Sequence[Any]]) -> Any:
-        """The numbers of what a function makes of links, a DAG and joints at a state of symbols."""
+        """The values of a function of links, a DAG and joints, the state being symbols."""
         dag = Dag()
         tree = kinematic_tree(self.model.system(), formulated(self.model), dag, {})
         q = [dag.symbol("q", k) for k in range(len(self.q))]
