@@ -1,4 +1,4 @@
-"""Conformance of every registered constraint: what its rows say agrees with the equation of position itself.
+"""Conformance of every registered constraint: its rows agree with its equation of position.
 
 A constraint that is added to `linegraph.components.constraints.CONSTRAINTS` is tested here without another
 line, unless it needs options. Rates are complex steps along the motion of both ends.
@@ -197,7 +197,7 @@ def test_its_rows_are_directions_of_length_one_that_are_not_one(name: str, seed:
     assert np.linalg.matrix_rank(wrenches) == len(found)
 
 
-# what each type holds: its rows beside geometry
+# the rows of each type, compared with geometry
 
 
 def held(name: str, seed: int) -> tuple[Any, Any, Any, list[Any], list[Any], list[Any]]:
@@ -314,7 +314,7 @@ def test_j_is_the_derivative_of_its_position_and_gamma_of_its_rate(name: str, se
 
 
 def test_a_pose_moves_along_its_twist() -> None:
-    """What the steps above stand on: turning about ground's axes, through the pose's own origin."""
+    """Checks the steps used above: a turn about ground's axes through the pose's own origin."""
     at = pose(turned((1, 2, 3), 0.7), (1, 2, 3))
     w, u = np.array([0.3, -0.4, 0.5]), np.array([1.0, 0.0, -2.0])
     ahead = moved(at, (w, u), 1j * TINY)

@@ -1,4 +1,4 @@
-"""Named outputs of a pendulum on a spring, a driven joint and a motor, beside their formulas."""
+"""Named outputs of a pendulum on a spring, a driven joint and a motor, compared with formulas."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def test_an_input_that_prescribes_a_motion_may_be_named() -> None:
 
 
 def test_an_effort_has_the_name_of_a_coordinate_or_of_nothing() -> None:
-    """The torque in a hinge is called as its angle, those in a ball as its velocities: neither is meant."""
+    """An effort shares its name with an angle or a velocity; an output never means the effort."""
     found, _ = value("hinge", u=[17.0])
     assert found == ANGLE
     model = lg.Model("ball")

@@ -1,4 +1,4 @@
-"""What the sets of functions say: which are emitted when, which have a twin, which know no constraint."""
+"""Which functions are emitted, which have a prepared twin, and which do not depend on constraints."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ REFUSED: dict[str, set[str]] = {
         "inertial_parameters",
     },
 }
-"""What there is not of each model."""
+"""The functions that each model does not have."""
 
 FRAMES = {"linkage": "rocker", "arm": "z", "led": "bob"}
 
@@ -131,7 +131,7 @@ def asked(name: str, key: str) -> Module:
 
 @cache
 def whole(name: str, *options: bool) -> Module:
-    """All that there is of a model."""
+    """All functions of a model."""
     further = [key for key in ON_REQUEST if key not in REFUSED[name]]
     frames = [NamedFrame("tip", FRAMES[name])] if name in FRAMES else []
     made = derivation(name, *options)
@@ -180,12 +180,12 @@ def test_unasked_all_but_what_is_on_request_is_emitted(name: str) -> None:
 
 
 @pytest.mark.parametrize("key", OF_FRAMES)
-def test_functions_of_frames_want_a_frame(key: str) -> None:
+def test_functions_of_frames_need_a_frame(key: str) -> None:
     with pytest.raises(ModelError, match="name a frame"):
         module_of(derivation("arm"), "one", Request(only=(key,)))
 
 
-def test_sets_name_functions_that_there_are_and_each_once() -> None:
+def test_sets_name_existing_functions_and_each_once() -> None:
     assert {*ON_REQUEST} <= PROGRAMS.keys()
     assert {*OF_FRAMES} <= {*ON_REQUEST}
     for names_of_set in (ON_REQUEST, PREPARED, ANYWHERE, OF_FRAMES):
@@ -228,13 +228,13 @@ def test_all_but_what_is_read_now_and_then_is_prepared() -> None:
 
 
 def test_a_hole_in_the_register_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What a function calls is made by some key; without that one there is no end to the search."""
+    """Every function that is called must be made by some key; the search used to run forever."""
     monkeypatch.setitem(PROGRAMS, "forward_dynamics", lambda _: ())
     with pytest.raises(LookupError, match="makes forward_dynamics"):
         asked("arm", "power")
 
 
-# which know no constraint
+# functions that do not depend on constraints
 
 STATE = {
     "q": [0.7, -0.4, 1.1],  # the loop stands open
@@ -245,7 +245,7 @@ STATE = {
 
 
 def results(module: Module) -> dict[str, dict[str, Any]]:
-    """Of all functions without constraints as arguments their numbers at the state."""
+    """The results, at the state, of all functions that need neither multipliers nor another function."""
     found = {}
     for program in module.programs:
         called = [call.program for call in getattr(program, "calls", ())]
@@ -258,7 +258,7 @@ def results(module: Module) -> dict[str, dict[str, Any]]:
 
 
 def test_what_is_right_anywhere_is_the_same_without_the_constraint() -> None:
-    """Of a linkage and of its bars without the hinge that closes it, off the constraint."""
+    """Compares a linkage with its bars without the closing hinge, at a state off the constraint."""
     closed, opened = (results(whole("linkage", way)) for way in (True, False))
 
     def same(function: str) -> bool:

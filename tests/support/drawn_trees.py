@@ -1,4 +1,4 @@
-"""Random trees at a random state: for the Newton-Euler oracle, and as links over floats or a DAG."""
+"""Random trees at a random state, for the Newton-Euler oracle and as links over floats or a DAG."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Drawn(NamedTuple):
         return TreeState(walked(self.model), self.q.tolist(), self.v.tolist())
 
     def over_dag(self, function: Callable[[TreeState], Sequence[Any]]) -> Any:
-        """The numbers of what a function makes of the links at a state of symbols."""
+        """The values of a function of the links at a state of symbols."""
         dag = Dag()
         tree = kinematic_tree(self.model.system(), formulated(self.model), dag, {})
         q = [dag.symbol("q", k) for k in range(len(self.q))]
