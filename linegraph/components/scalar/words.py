@@ -26,9 +26,7 @@ class connects:  # noqa: N801  (a line of the register reads as a verb)
     def kind(self) -> type[Component]:
         """The type."""
         module, name = self._place
-        found: type[Component] = getattr(
-            import_module(f"linegraph.components.scalar.{module}"), name
-        )
+        found: type[Component] = getattr(import_module(f"linegraph.components.{module}"), name)
         return found
 
     def __get__(self, model: Any, owner: type | None = None) -> Any:
