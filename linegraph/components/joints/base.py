@@ -243,8 +243,7 @@ class Joint:
         """Split the moments of the head body into those it keeps and those handed to the tail body.
 
         M and h are the same before and after, so fewer moments have to be carried to the root. The moments
-        that can be handed over are those that Gautier and Khalil regroup into base parameters [Gautier and
-        Khalil 1990].
+        that can be handed over are those that regroup into base parameters [Gautier and Khalil 1990].
 
         Args:
             head: mass (kg), first (kg m) and second moments (kg m^2) about the head's origin, in aligned

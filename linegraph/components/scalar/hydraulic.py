@@ -136,10 +136,10 @@ class Pipe(Dissipator):
 class Orifice(Dissipator):
     """A sharp-edged orifice: ``Y = coefficient sign(X) sqrt(|X|)``, rounded where |X| is below `width`.
 
-    Turbulent flow towards the lower pressure. With the discharge coefficient c, the area A and the density
-    of the liquid, `coefficient` is ``c A sqrt(2 / density)`` [Rabie 2009, eq. 2.36]. The root alone has an
-    infinite slope at X = 0, where neither Newton's method nor an integrator gets past it, so the law here is
-    linear in X for |X| well below `width`, as laminar flow is.
+    Torricelli's law, turbulent flow towards the lower pressure: of an orifice of area A with the discharge
+    coefficient c, `coefficient` is ``c A sqrt(2 / density)``. The root alone has an infinite slope at X = 0,
+    where Newton's method and integrators fail, so the law here is linear in X for |X| well below `width`, as
+    laminar flow is.
 
     Attributes:
         coefficient: flow for a pressure drop of one (m^3/s/sqrt(Pa)).

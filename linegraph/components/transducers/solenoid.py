@@ -20,7 +20,7 @@ class Solenoid(Transducer):
     i is its current Y (A), x the displacement of its mechanical port (m): where that grows the force is
     positive. The force at a given current is the slope of the *co-energy* W'; the slope of the energy W at
     a given flux linkage is its opposite, ``-∂W/∂x``, and with W for a state psi the current is
-    ``i = ∂W/∂psi`` and ``dpsi/dt = X - resistance i`` [Woodson & Melcher 1968, sec. 3.1.2].
+    ``i = ∂W/∂psi`` and ``dpsi/dt = X - resistance i`` [Woodson and Melcher 1968, sec. 3.1.2].
 
     Attributes:
         inductance: L(x), an expression of the displacement x: ``W' = L(x) i² / 2``; or

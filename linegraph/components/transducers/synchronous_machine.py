@@ -25,7 +25,7 @@ class SynchronousMachine(Component):
     X is the column of the windings' voltages (V), i that of their currents (A), inductance and flux are
     functions of the mechanical angle x (rad), which for p pole pairs enters as ``p x``. The torque (N m) is
     ``i^T inductance'(x) i / 2 + i^T flux'(x)``; what magnets alone store, and the cogging torque with it, is
-    not part of W' [Woodson & Melcher 1968, sec. 4.2.4].
+    not part of W' [Woodson and Melcher 1968, sec. 4.2.4].
 
     Attributes:
         windings: the vertices of each, (tail, head).

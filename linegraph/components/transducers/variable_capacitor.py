@@ -19,7 +19,7 @@ class VariableCapacitor(Transducer):
 
     v is its voltage X (V), x the displacement of its mechanical port (m): where that grows the force is
     positive. With W(q, x) for the charge q as a state, ``v = ∂W/∂q``, ``dq/dt = Y``, and the force is
-    ``-∂W/∂x`` [Woodson & Melcher 1968, sec. 3.1.2].
+    ``-∂W/∂x`` [Woodson and Melcher 1968, sec. 3.1.2].
 
     Attributes:
         capacitance: C(x), an expression of the displacement x: ``W' = C(x) v² / 2``; or
