@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 GROUND = "ground"
 COMMON_NAMES = ("gnd", "0", "earth", "reference", "vss", "world", "base", "datum")
-"""What others call it."""
+"""Names that other programs use for ground: hints suggest `GROUND` where one is met."""
 MASS_CENTER = "mass_center"
 
 SMALLEST = 1e-150
@@ -71,7 +71,7 @@ class Body:
 
 
 def inertia_of(given: Any, who: str) -> Inertia:
-    """An inertia tensor from what a user may write.
+    """An inertia tensor from any of the forms that a user may write.
 
     Args:
         given: the diagonal (xx, yy, zz), a symmetric 3 x 3 matrix, or entries by name, such as

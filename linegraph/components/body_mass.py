@@ -1,4 +1,4 @@
-"""What a body's mass is to the equations: moments about a point, mass centre, central inertia."""
+"""How a body's mass enters the equations: moments about a point, mass centre, central inertia."""
 
 from __future__ import annotations
 
@@ -27,7 +27,8 @@ LEAST_MASS = 1e-37
 def body_moments(body: Body, resolve: Resolve, pose: Placement) -> Moments:
     """A body's mass distribution about the origin of a frame in which the body stands at `pose`.
 
-    From the mass centre in one step: what a shift adds and the next one takes off would leave its rounding.
+    From the mass centre in one step: by way of the body's origin, the terms that the first shift adds and the
+    second removes would leave their rounding.
 
     Args:
         body: its mass, and its mass centre or first moment.

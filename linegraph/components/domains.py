@@ -26,7 +26,7 @@ class Variable:
         name: as engineers call it.
         symbol: of its unit.
         unit: exponents of (kg, m, s, A, K).
-        letter: what names of states begin with: ``v_C1`` is the voltage of C1.
+        letter: the beginning of names of states: ``v_C1`` is the voltage of C1.
         integral: letter, unit and name of its integral over time, where that has some.
     """
 
@@ -50,7 +50,7 @@ class Domain:
             the exception: it is in the graph, but not in the power audit.
 
     Raises:
-        ValueError: the units' product is not what `power` says.
+        ValueError: the units' product is a power (W) and `power` is false, or the reverse.
     """
 
     name: str
@@ -60,7 +60,7 @@ class Domain:
     power: bool = True
 
     def __post_init__(self) -> None:
-        """Require that through times across is a power exactly where `power` says so."""
+        """Require that through times across is a power exactly where `power` is true."""
         product = tuple(a + b for a, b in zip(self.across.unit, self.through.unit, strict=True))
         if (product == POWER) != self.power:
             raise ValueError(f"domain {self.name}: through x across must be a power")
@@ -150,7 +150,7 @@ def exponents(symbol: str) -> Unit:
     """A unit such as ``m^3/s`` or ``N*m`` as exponents of base units: after the slash they are negative.
 
     Args:
-        symbol: products of symbols of `UNITS` and their powers; what follows a slash divides.
+        symbol: products of symbols of `UNITS` and their powers; those after a slash divide.
 
     Raises:
         ValueError: a symbol is not known, or a power is no number.

@@ -170,8 +170,9 @@ def names_in(x: Any) -> set[str]:
 
 
 def sample_values(parameters: Iterable[Parameter], algebra: Algebra) -> dict[str, Scalar]:
-    """Each parameter's value, or some positive number where it has none: to judge what holds for all.
+    """Each parameter's value, or some positive number where it has none.
 
+    At such values properties are tested that are to hold at all values.
     The numbers are drawn from 0.5 to 2 with a fixed seed, so that the same model gets the same ones.
 
     Args:

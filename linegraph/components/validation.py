@@ -1,4 +1,4 @@
-"""Small checks of what a user gives, with errors that name the thing."""
+"""Small checks of values that a user gives, with errors that name the thing."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""What every constraint answers; each type is one file beside this one.
+"""The base of all constraints; each type is one file beside this one.
 
 A *constraint* is a chord whose across variable is known where its through variable is not: a rigid rod, a
 point in prescribed motion, a wheel that rolls without slip (a velocity source of value 0). Each of its
 *rows* is one reaction direction: a unit force and a unit torque between its ends, whose product with the
-relative motion is what the constraint fixes. All types answer the same questions in the same order:
+relative motion the constraint fixes. All types have the same methods in the same order:
 
     values   prescribed   equations   rows
 """
@@ -79,7 +79,7 @@ class ReactionRow(NamedTuple):
     Attributes:
         position: the equation of position, 0 where it holds; None where only velocities are constrained.
         force, torque: on the head, the torque about the head's origin.
-        rate: of what is prescribed.
+        rate: the prescribed value of that product; 0 where nothing is prescribed.
     """
 
     position: Scalar | None

@@ -45,7 +45,7 @@ class Relation:
         """The coefficients of its velocities and the rest: ``rate = a v - b`` gives (a, b).
 
         The expression is linear in the velocities, so its values at zero and at unit velocities determine it
-        exactly; differentiating the formula would need to know what it names.
+        exactly; differentiating the formula would have to follow all names in it.
 
         Args:
             algebra: where to calculate.

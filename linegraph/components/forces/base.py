@@ -1,4 +1,4 @@
-"""What every force element answers; each type is one file beside this one.
+"""The base of all force elements; each type is one file beside this one.
 
 An *element* is an edge with a law: its through variable, a force or a torque, follows from its across
 variable and that variable's rate. It acts between two points, along the line that joins them, or inside a
@@ -8,7 +8,7 @@ joint, along the joint's coordinate:
     joint = name              x is the joint's coordinate (rad or m), v its rate (rad/s or m/s)
 
 A positive through variable pulls: points together, a coordinate back. It takes in the power ``through v``.
-All types answer the same questions in the same order:
+All types have the same methods in the same order:
 
     values   through   potential
 """
@@ -77,7 +77,7 @@ class Element:
     def potential(self, algebra: Algebra, x: Scalar, resolve: Resolve) -> Scalar:
         """The energy stored at x (J), whose derivative is the force at v = 0.
 
-        0 for what stores none, or none by a formula of its own.
+        0 for elements that store none, or that have no formula for it.
 
         Args:
             algebra: where to calculate.

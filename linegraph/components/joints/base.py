@@ -1,8 +1,8 @@
-"""What every joint type answers; each type is one file beside this one.
+"""The base of all joint types; each type is one file beside this one.
 
 A joint is an oriented edge from a *tail* frame to a *head* frame, in translation and in rotation. Its
-across variables are the motion of the head relative to the tail; its coordinates q and velocities v are
-what it leaves free of it. All types answer the same questions in the same order:
+across variables are the motion of the head relative to the tail; its coordinates q and velocities v
+describe the part of it that is free. All types have the same methods in the same order:
 
     positions   velocities   rest   resolved   alignment   motion   sequence   rates   adjoint   regroup
     restricted   measured   duals
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 BY_INPUT = "input"
-"""What a joint's drive says to take its motion from inputs."""
+"""The `drive` of a joint whose motion comes from inputs."""
 
 
 class Along(NamedTuple):
@@ -250,7 +250,7 @@ class Joint:
                 axes.
 
         Returns:
-            What the head keeps, and what the tail gets; the sum is `head`.
+            The moments that the head keeps, and those that the tail gets; their sum is `head`.
         """
         return head, NO_MOMENTS
 

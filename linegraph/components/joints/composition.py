@@ -1,4 +1,4 @@
-"""Motions one after the other: what joints of several parts, without bodies in between, are made of."""
+"""Motions one after the other: the parts of joints that have several, without bodies in between."""
 
 from __future__ import annotations
 
@@ -256,8 +256,8 @@ def _across(a: Vector, z: Vector) -> Vector:
 def parallel(a: Vector, b: Vector) -> bool:
     """Whether two unit vectors are known to be parallel or opposite.
 
-    The sine of the angle between them is compared with `PARALLEL`. Vectors with symbols are not: what holds
-    for some values of the parameters only must not remove an axis.
+    The sine of the angle between them is compared with `PARALLEL`. Vectors with symbols are not: an axis
+    must not be dropped because two coincide for some values of the parameters.
 
     Args:
         a: a unit vector.

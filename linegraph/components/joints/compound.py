@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 PARTS: dict[str, type[Joint]] = {
     kind.kind: kind for kind in (Revolute, Prismatic, Cylindrical, Helical, Planar)
 }
-"""What a compound joint may consist of: joints with one axis."""
+"""The possible parts of a compound joint: joints with one axis."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Compound(Joint):
     """A sequence of simple joints from tail to head; the head frame of each is the tail frame of the next.
 
     The same mechanism as with massless bodies between the parts. q and v are those of the parts in order,
-    named as if the parts were joints called NAME_1, NAME_2, ... Their motions are composed as `compose` says:
+    named as if the parts were joints called NAME_1, NAME_2, ... `compose` puts their motions together:
     R = R1 R2 ..., and the columns and biases of each part carried to the last head frame.
 
     Attributes:
@@ -150,7 +150,7 @@ class Compound(Joint):
         return tuple(rows)
 
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
-        """Refuse it as a chord: what it leaves free depends on the positions of its parts.
+        """Refuse it as a chord: its free directions depend on the positions of its parts.
 
         Raises:
             ModelError: always.

@@ -26,7 +26,7 @@ class Free(Joint):
 
     q = (position in the tail frame (m), unit quaternion x, y, z, w); v = (velocity of the head's origin
     (m/s), angular velocity (rad/s)), both in head axes. Or, with `angles`, q = (position, three angles) and
-    v = q̇, with singular orientations as `Spherical` tells. It carries no effort.
+    v = q̇, with the singular orientations described at `Spherical`. It carries no effort.
 
     With the quaternion, R = R(q), d = position, w = v4..v6, u = v1..v3, and the rates of q are ``R u`` and
     ``1/2 q (w, 0)``: neither the columns nor, for a body that moves alone, M depend on q.

@@ -58,7 +58,7 @@ class Revolute(Joint):
         return Motion(Rotation((turn,)), ZERO, ((0, 0, 1),), (ZERO,))
 
     def regroup(self, head: Moments) -> tuple[Moments, Moments]:
-        """Hand over what could as well be on the axis.
+        """Hand over the moments of mass that could as well be on the axis.
 
         The mass as a point on the axis, its first moment along the axis and its spread along it look the same
         from the tail body at every angle [Gautier and Khalil 1990].

@@ -36,7 +36,7 @@ class Universal(Joint):
     """A cardan (Hooke) joint: the head turns about an axis that itself turns about one of the tail.
 
     q = (angle1, angle2) (rad), v their rates (rad/s). The first axis is fixed in the tail frame, the second
-    in the head frame; both are given in the frames as they stand at q = 0, where these coincide. With a1, a2
+    in the head frame; both are given in the frames at q = 0, where these coincide. With a1, a2
     the axes, R = turn(a1, q1) turn(a2, q2), d = 0, ``w = turn(a2, q2)^T a1 v1 + a2 v2`` in head axes. The
     efforts are torques about the two axes (N m).
 

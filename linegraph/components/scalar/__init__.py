@@ -18,8 +18,8 @@ from linegraph.components.scalar.words import connects
 class Words(Networks):
     """The builder's methods: ``model.resistor("R1", between=("a", "b"), resistance=100.0)``.
 
-    Each line is a type's word, its file below `linegraph.components`, and its name there. The words of model
-    files are the same, in the same order.
+    Each line gives a type's name in model files and for the builder, its file below `linegraph.components`,
+    and its class. The schema has the same order.
     """
 
     resistor = connects("scalar.electrical", "Resistor")
@@ -86,7 +86,7 @@ class Words(Networks):
 
 
 class _Register(Mapping[str, type[Component]]):
-    """The types by their words; asking for one imports its file."""
+    """The types by name; the file of a type is imported when it is looked up."""
 
     def __getitem__(self, word: str) -> type[Component]:
         method: Any = vars(Words)[word]
@@ -102,6 +102,6 @@ class _Register(Mapping[str, type[Component]]):
 
 
 COMPONENTS = _Register()
-"""The types of all components by their words, in the order of `Words`."""
+"""The types of all components by name, in the order of `Words`."""
 
 __all__ = ["COMPONENTS", "Component", "Words"]

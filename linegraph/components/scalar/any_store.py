@@ -1,4 +1,4 @@
-"""Any store: a charge or a co-energy of what it keeps, in any subspace."""
+"""Any store: a charge or a co-energy as a function of the variable kept, in any subspace."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class AnyStore(Component):
     """A store in any subspace: ``Y = d/dt Q(X)`` if it keeps X, ``X = d/dt Q(Y)`` if it keeps Y.
 
     X is the across variable of the tail less that of the head, Y flows from tail to head, in the units of the
-    subspace. With k for what it keeps, ``Q = constant k``, or as given, or ``∂W'/∂k``; it stores ``Q k -
+    subspace. With k the variable kept, ``Q = constant k``, or as given, or ``∂W'/∂k``; it stores ``Q k -
     W'``.
 
     Attributes:
@@ -67,7 +67,7 @@ class AnyStore(Component):
         """Refuse also a variable to keep that is neither.
 
         Raises:
-            ModelError: a field is missing or one too many, or `keeps` is another word.
+            ModelError: a field is missing or one too many, or `keeps` is neither.
         """
         super().require_fields()
         if self.keeps not in (ACROSS, THROUGH):

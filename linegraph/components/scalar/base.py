@@ -1,4 +1,4 @@
-"""What every component of a scalar network answers.
+"""The base of all components of scalar networks.
 
 A *component* is a terminal graph in scalar subspaces: one edge for each of its ports. The across variable X
 of an edge is the potential of its tail less that of its head, the through variable Y flows through the
@@ -12,8 +12,8 @@ of the A-type and the T-type, are those of linear graphs [Rowell and Wormley 199
 
 A port is *static*, with a law between across and through variables, or it *stores*: it keeps one of its
 variables, and the other is the rate of its charge, ``∂W'/∂kept`` of the component's co-energy W'. With a
-displacement x in the co-energy the mechanical port pushes with ``∂W'/∂x``. All types answer the same
-questions in the same order:
+displacement x in the co-energy the mechanical port pushes with ``∂W'/∂x``. All types have the same methods
+in the same order:
 
     ports   kept   states   laws   kept_coenergy   charges   rates   own_energy   dissipation
 """
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from linegraph.algebra.scalar import Scalar
 
 ACROSS, THROUGH, STATIC = "across", "through", ""
-"""What a port keeps."""
+"""The variable that a port keeps; a static port keeps none."""
 
 Pair = tuple[str, str]
 Own = Mapping[str, tuple[str, ...]]
@@ -185,7 +185,7 @@ class Component:
     def laws(self, at: Terminals) -> tuple[Scalar, ...]:
         """One expression for each port.
 
-        For a static port, a residual: what is zero. For a port that stores, the part of its other variable
+        For a static port, a residual, which is zero. For a port that stores, the part of its other variable
         that is not the rate of its charge. A mechanical port's law starts with +Y; the force of a
         displacement in the co-energy is added to it.
 

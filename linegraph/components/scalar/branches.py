@@ -1,4 +1,4 @@
-"""The terminal graph of scalar components: their edges, and what each keeps."""
+"""The terminal graph of scalar components: their edges, and the variable that each keeps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the builder does with components and domains, whatever their types."""
+"""The builder's part for components and domains, whatever their types."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 class Ratio(TwoPort):
     """A coupling of like edges: ``X1 = ratio X2``.
 
-    The second law is ``Y2 = -ratio Y1``: what flows into the first edge leaves the second, multiplied by the
+    The second law is ``Y2 = -ratio Y1``: the flow into the first edge leaves the second, multiplied by the
     ratio.
     """
 
@@ -68,7 +68,7 @@ class TwoDomains(TwoPort):
 class Transformer(TwoDomains):
     """An ideal transformer: ``X1 = ratio X2``, ``Y2 = -ratio Y1``, also of direct current.
 
-    What flows into the first edge leaves the second, multiplied by the ratio. Between unlike subspaces the
+    The flow into the first edge leaves the second, multiplied by the ratio. Between unlike subspaces the
     ratio has a unit: that of the first across variable over that of the second.
 
     Attributes:

@@ -93,7 +93,7 @@ class AnyElement(Component):
         return () if self.rate is None else (at.value(self.rate, **self._own(at)),)
 
     def dissipation(self, at: Terminals) -> Scalar:
-        """``x y`` (W); 0 if it has a state, as what it stores is not known."""
+        """``x y`` (W); 0 if it has a state, because then it may store a part, which is not known."""
         return at.X[0] * at.Y[0] if self.rate is None else 0
 
     def values(self) -> tuple[Any, ...]:

@@ -1,4 +1,4 @@
-"""What networks exert on 3-D mechanics: the edges of transducers there, as force elements."""
+"""The edges of transducers in 3-D mechanics, as force elements."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NetworkForce(Element):
-    """The edge of a transducer in 3-D mechanics: ``through = Y``, what it takes in holds its ends back.
+    """The edge of a transducer in 3-D mechanics: ``through = Y``, which holds its ends back.
 
     Y is a variable of the network (N, or N m at a joint that turns); where the transducer drives, Y < 0.
 

@@ -1,8 +1,8 @@
-"""The components of 1-D mechanics, each one class for what slides and for what turns.
+"""The components of 1-D mechanics, each one class for translation and rotation.
 
 `translational` and `rotational` name the types. X is a velocity (m/s) or an angular velocity (rad/s) of the
-tail relative to the head, Y the force (N) or torque (N m) that presses the ends together: it acts on the tail
-against X and on the head along it.
+tail relative to the head, Y the force (N) or torque (N m) that presses the ends together: where Y > 0 the
+head is pushed forward and the tail back.
 """
 
 from __future__ import annotations

@@ -17,19 +17,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Store(OnePort):
-    """A store by a constant, by its charge as a function of what it keeps, or by its co-energy.
+    """A store by a constant, by its charge as a function of the variable kept, or by its co-energy.
 
-    With k what is kept, ``W' = constant k² / 2``, and the other variable is ``d/dt ∂W'/∂k``. It stores
+    With k the variable kept, ``W' = constant k² / 2``, and the other variable is ``d/dt ∂W'/∂k``. It stores
     ``k ∂W'/∂k - W'`` (J).
     """
 
     keeps: ClassVar[str]
     charge_field: ClassVar[str] = ""
     grounded: ClassVar[bool] = False
-    """Whether one of its ends is ground: what it keeps is measured from there."""
+    """Whether one of its ends must be ground, from which the variable it keeps is measured."""
 
     def constant(self, at: Terminals) -> Scalar:
-        """The charge for one of what is kept.
+        """The charge for a unit of the variable kept.
 
         Args:
             at: the component's variables.
@@ -37,7 +37,7 @@ class Store(OnePort):
         raise NotImplementedError
 
     def kept(self) -> tuple[str, ...]:
-        """Its across or its through variable, as its type says."""
+        """Its across or its through variable, depending on its type."""
         return (self.keeps,)
 
     def kept_coenergy(self, at: Terminals) -> Scalar:

@@ -146,7 +146,7 @@ class Losses(OnePort):
     domain_name = THERMAL.name
 
     def laws(self, at: Terminals) -> tuple[Scalar, ...]:
-        """Residual: the heat flow less the sum of what is dissipated (W)."""
+        """Residual: the heat flow less the sum of the dissipated powers (W)."""
         total: Scalar = 0
         for name in self.of:
             total = total + at.taken(name)

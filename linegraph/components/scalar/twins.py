@@ -1,8 +1,8 @@
-"""Twins: one class of component that stands in several power subspaces, as a type for each.
+"""Twins: one class of component with a type for each of several power subspaces.
 
 A damper obeys ``Y = damping X`` whether it slides or turns, and a source prescribes a voltage as it would a
-pressure. Such a law is written once, in one class; what differs from subspace to subspace (the name of the
-type, of its key, and their units) is data. Each type is a dataclass of its own, because the reader of model
+pressure. Such a law is written once, in one class; the names of types and keys, and the units, which differ
+from subspace to subspace, are data. Each type is a dataclass of its own, because the reader of model
 files, the schema and the builder take keys and descriptions from its fields and its docstring.
 """
 
@@ -39,14 +39,15 @@ class Twins:
     domain: Domain
     module: str
 
-    def of(self, one: type[One], kind: str, about: str, **keys: str) -> type[One]:
+    def of(self, one: type[One], kind: str, about: str, /, **keys: str) -> type[One]:
         """The type of one class in this subspace.
 
-        Its docstring is `about`, what the docstring of the class says below its first line, and the keys.
+        Its docstring is `about`, followed by the class's docstring from the second paragraph on, and by the
+        keys.
 
         Args:
             one: the class, with the law; it reads the value of an added key by `required`.
-            kind: the type's word in model files; the type has the same name in capitals.
+            kind: the type's name in model files; the class is called the same in CamelCase.
             about: the first line of its docstring, with its equation.
             keys: what each key means, with its unit. A key that the class does not have becomes a field of
                 the type, and must be given.
@@ -82,7 +83,7 @@ class Twins:
         """The source of this subspace's across variable.
 
         Args:
-            kind: the type's word in model files.
+            kind: the type's name in model files.
             key: the name of the prescribed value.
         """
         about = f"A source: ``X = {key}``, tail over head."
@@ -92,7 +93,7 @@ class Twins:
         """The source of this subspace's through variable.
 
         Args:
-            kind: the type's word in model files.
+            kind: the type's name in model files.
             key: the name of the prescribed value.
         """
         about = f"A source: ``Y = {key}``, through it from tail to head."
@@ -100,5 +101,5 @@ class Twins:
 
 
 def _given(unit: str) -> str:
-    """What a prescribed value may be, after its unit."""
+    """The description of a prescribed value: its unit, and the kinds of value allowed."""
     return f"{unit.replace('*', ' ')}: a number, an input, an expression of t or of any variable."

@@ -22,8 +22,8 @@ class DcMotor(Transducer):
 
     X is the voltage (V) and Y the current (A) of the armature, w in rad/s. One constant serves for torque and
     back-EMF, because the armature turns the power ``constant Y`` times the rotor's speed from electrical into
-    mechanical without loss. The gear has no loss either; what the rotor feels reaches the joint times
-    `ratio`, its inertia and damping times its square.
+    mechanical without loss. The gear has no loss either; torques of the rotor reach the joint times
+    `ratio`, its inertia and damping times the square of it.
 
     Attributes:
         constant: torque by current (N m/A), the same as back-EMF by speed (V s/rad).
@@ -57,7 +57,7 @@ class DcMotor(Transducer):
     def laws(self, at: Terminals) -> tuple[Scalar, ...]:
         """Voltage beside that of the inductance (V) and torque beside that of the inertia (N m).
 
-        Where there is no inductance or inertia, what is zero: the difference to X or Y.
+        Without inductance or inertia, the residual instead: X or Y less that value.
         """
         n = at.value(self.ratio)
         k = at.value(self.constant) * n

@@ -19,7 +19,7 @@ class Interface(Transducer):
     """A vertex of a network that moves with 3-D mechanics: ``X = w``.
 
     X is the velocity of the tail relative to the head, w the rate of the coordinate or of the distance of two
-    points. What the network pushes the vertex with, Y, acts along that coordinate, so that no power is lost.
+    points. Y, the force or torque from the network, acts along that coordinate, so that no power is lost.
     """
 
     def __init_subclass__(cls) -> None:

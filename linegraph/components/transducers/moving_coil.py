@@ -18,8 +18,8 @@ class MovingCoil(Transducer):
     """A coil in a magnet's field: ``X = resistance Y + d/dt (inductance Y) + constant w``.
 
     It pushes with ``constant Y`` (N) along w (m/s). X is the voltage (V) and Y the current (A) of the coil.
-    Induction and Laplace's force have one constant, so the field takes no power: ``(constant w) Y`` is both
-    what the back-EMF takes from the network and what the force gives to mechanics.
+    Induction and Laplace's force have one constant, so the field takes no power: the back-EMF takes
+    ``(constant w) Y`` from the network, and the force gives as much to mechanics.
 
     Attributes:
         constant: flux density times length of wire, B l (N/A, the same as V s/m).
@@ -45,7 +45,7 @@ class MovingCoil(Transducer):
     def laws(self, at: Terminals) -> tuple[Scalar, ...]:
         """Voltage beside that of the inductance (V), and Y plus Laplace's force (N).
 
-        Without inductance the first is what is zero: X less that voltage.
+        Without inductance the first is the residual X less that voltage.
         """
         k = at.value(self.constant)
         voltage = at.value(self.resistance) * at.Y[0] + k * at.X[1]

@@ -54,7 +54,7 @@ class Solenoid(Transducer):
     def laws(self, at: Terminals) -> tuple[Scalar, ...]:
         """Voltage of the resistance (V), and the mechanical Y without the force of the co-energy (N).
 
-        Of an energy, what is zero: current less ``∂W/∂psi`` (A), and Y less ``∂W/∂x`` (N).
+        Of an energy, two residuals: current less ``∂W/∂psi`` (A), and Y less ``∂W/∂x`` (N).
         """
         if self.energy is None:
             return at.value(self.resistance) * at.Y[0], at.Y[1]

@@ -24,8 +24,8 @@ class SynchronousMachine(Component):
 
     X is the column of the windings' voltages (V), i that of their currents (A), inductance and flux are
     functions of the mechanical angle x (rad), which for p pole pairs enters as ``p x``. The torque (N m) is
-    ``i^T inductance'(x) i / 2 + i^T flux'(x)``; what magnets alone store, and the cogging torque with it, is
-    not part of W' [Woodson and Melcher 1968, sec. 4.2.4].
+    ``i^T inductance'(x) i / 2 + i^T flux'(x)``; the energy of the magnets alone, and with it the
+    cogging torque, is not part of W' [Woodson and Melcher 1968, sec. 4.2.4].
 
     Attributes:
         windings: the vertices of each, (tail, head).
@@ -93,7 +93,7 @@ class SynchronousMachine(Component):
         return True
 
     def require_fields(self) -> None:
-        """Refuse a machine without windings, and what does not fit them.
+        """Refuse a machine without windings, and matrices that do not fit them.
 
         Raises:
             ModelError: no winding, a matrix or a list of another size, or a matrix that is not symmetric as

@@ -50,7 +50,7 @@ class VariableCapacitor(Transducer):
     def laws(self, at: Terminals) -> tuple[Scalar, ...]:
         """Nothing beside the current, and the mechanical Y without the force of the co-energy (N).
 
-        Of an energy, what is zero: voltage less ``∂W/∂q`` (V), and Y less ``∂W/∂x`` (N).
+        Of an energy, two residuals: voltage less ``∂W/∂q`` (V), and Y less ``∂W/∂x`` (N).
         """
         if self.energy is None:
             return 0, at.Y[1]
