@@ -24,6 +24,7 @@ class Interface(Transducer):
 
     def __init_subclass__(cls) -> None:
         """A shaft turns where the network is one of rotation."""
+        super().__init_subclass__()
         cls.turns = cls.domain_name == ROTATION_1D.name
 
     def laws(self, at: Terminals) -> tuple[Scalar, ...]:

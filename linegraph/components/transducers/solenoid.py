@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 class Solenoid(Transducer):
     """A solenoid or electromagnet: ``X = resistance Y + d/dt ∂W'/∂i``, and it pushes with ``∂W'/∂x``.
 
-    i is its current Y (A), x the displacement of its mechanical port (m): where that grows the force is
-    positive. The force at a given current is the slope of the *co-energy* W'; the slope of the energy W at
-    a given flux linkage is its opposite, ``-∂W/∂x``, and with W for a state psi the current is
-    ``i = ∂W/∂psi`` and ``dpsi/dt = X - resistance i`` [Woodson and Melcher 1968, sec. 3.1.2].
+    i is its current Y (A), x the displacement of its mechanical port (m); a positive force (N) makes x grow.
+    It is the slope of the *co-energy* W' at a given current, or ``-∂W/∂x`` of the energy W at a given flux
+    linkage [Woodson and Melcher 1968, sec. 3.1.2]. Where W is given, the flux linkage psi is a state:
+    ``i = ∂W/∂psi`` and ``dpsi/dt = X - resistance i``.
 
     Attributes:
         inductance: L(x), an expression of the displacement x: ``W' = L(x) i² / 2``; or

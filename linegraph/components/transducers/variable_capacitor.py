@@ -17,9 +17,10 @@ if TYPE_CHECKING:
 class VariableCapacitor(Transducer):
     """A condenser microphone, comb drive or plate: ``Y = d/dt ∂W'/∂v``, and it pushes with ``∂W'/∂x``.
 
-    v is its voltage X (V), x the displacement of its mechanical port (m): where that grows the force is
-    positive. With W(q, x) for the charge q as a state, ``v = ∂W/∂q``, ``dq/dt = Y``, and the force is
-    ``-∂W/∂x`` [Woodson and Melcher 1968, sec. 3.1.2].
+    v is its voltage X (V), x the displacement of its mechanical port (m); a positive force (N) makes x grow.
+    It is the slope of the *co-energy* W' at a given voltage, or ``-∂W/∂x`` of the energy W at a given charge
+    [Woodson and Melcher 1968, sec. 3.1.2]. Where W is given, the charge q is a state: ``v = ∂W/∂q`` and
+    ``dq/dt = Y``.
 
     Attributes:
         capacitance: C(x), an expression of the displacement x: ``W' = C(x) v² / 2``; or
