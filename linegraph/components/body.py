@@ -182,8 +182,8 @@ def _length(axis: Sequence[Any]) -> Any:
 def impossible(tensor: Inertia) -> str:
     """Why no distribution of mass has this inertia tensor; empty where one has.
 
-    Principal moments are never negative, and none exceeds the sum of the other two, since each is an
-    integral over two of x², y², z² [Traversaro et al. 2016].
+    Principal moments are never negative, and none exceeds the sum of the other two: they are the integrals
+    of y² + z², z² + x² and x² + y² over the mass [Traversaro et al. 2016].
 
     Args:
         tensor: entries (xx, xy, xz, yy, yz, zz) about the mass centre (kg m^2), numbers.
