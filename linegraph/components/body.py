@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 GROUND = "ground"
 COMMON_NAMES = ("gnd", "0", "earth", "reference", "vss", "world", "base", "datum")
-"""What others call it."""
+"""Names that other programs use for ground: hints suggest `GROUND` where one is met."""
 MASS_CENTER = "mass_center"
 
 SMALLEST = 1e-150
@@ -40,6 +40,7 @@ class Body:
     from the mass centre to the body's own frame and to each named frame.
 
     Attributes:
+        name: also that of the body's own frame.
         mass: kg.
         center: mass centre in the body's frame (m); None where `first` is given instead.
         first: first moment of mass in the body's frame (kg m), instead of `center`.
@@ -56,7 +57,7 @@ class Body:
     frames: Mapping[str, Placement] = field(default_factory=dict)
 
     def edges(self) -> list[Edge]:
-        """The terminal graph."""
+        """The terminal graph: for each subspace the inertia edge, then the arms."""
         center = f"{self.name}.{MASS_CENTER}"
         edges = []
         for domain in (TRANSLATION.name, ROTATION.name):
@@ -70,7 +71,15 @@ class Body:
 
 
 def inertia_of(given: Any, who: str) -> Inertia:
-    """An inertia tensor from what a user may write: (xx, yy, zz), a 3 x 3 matrix, or named entries.
+    """An inertia tensor from any of the forms that a user may write.
+
+    Args:
+        given: the diagonal (xx, yy, zz), a symmetric 3 x 3 matrix, or entries by name, such as
+            ``{"xx": 1.0, "xy": 0.1}`` (kg m^2). Off-diagonal entries are those of the tensor, -∫ x y dm.
+        who: the thing that errors name.
+
+    Returns:
+        The entries (xx, xy, xz, yy, yz, zz).
 
     Raises:
         ModelError: another shape, an unknown entry, or a matrix that is not symmetric.
@@ -100,6 +109,9 @@ def symmetric(rows: Sequence[Sequence[Any]]) -> Inertia | None:
 
     Numbers that differ by the rounding of a computed tensor are replaced by their mean.
 
+    Args:
+        rows: a 3 x 3 matrix.
+
     Example:
         >>> symmetric([[2.0, 0.1, 0], [0.1 + 1e-17, 2.0, 0], [0, 0, 3.0]])
         (2.0, 0.1, 0, 2.0, 0, 3.0)
@@ -117,7 +129,17 @@ def symmetric(rows: Sequence[Sequence[Any]]) -> Inertia | None:
 
 
 def orientation(who: str, rpy: Vector | None, axis: Vector | None, angle: float) -> Matrix:
-    """Axes of a frame from roll-pitch-yaw about fixed x, y, z or from an axis and an angle (rad)."""
+    """The axes of a frame as columns, from angles or from one turn.
+
+    Args:
+        who: the thing that errors name.
+        rpy: roll, pitch and yaw about the fixed axes x, y and z, in this order (rad); or
+        axis: the direction that the frame is turned about; None for no turn.
+        angle: of that turn, right-handed (rad).
+
+    Raises:
+        ModelError: the axis has no length.
+    """
     if rpy is not None:
         return from_rpy(*rpy)
     if axis is None:
@@ -126,10 +148,14 @@ def orientation(who: str, rpy: Vector | None, axis: Vector | None, angle: float)
 
 
 def unit(axis: Sequence[Any], who: str) -> Vector:
-    """`axis` scaled to length 1; coordinate axes stay exact.
+    """A direction scaled to length 1; coordinate axes stay exact.
+
+    Args:
+        axis: three numbers, parameters or SymPy expressions.
+        who: the thing that errors name.
 
     Raises:
-        ModelError: three zeros.
+        ModelError: three zeros, or text.
     """
     x, y, z = axis
     if any(isinstance(c, str) for c in axis):
@@ -156,7 +182,11 @@ def _length(axis: Sequence[Any]) -> Any:
 def impossible(tensor: Inertia) -> str:
     """Why no distribution of mass has this inertia tensor; empty where one has.
 
-    Principal moments are never negative, and none exceeds the sum of the other two.
+    Principal moments are never negative, and none exceeds the sum of the other two: they are the integrals
+    of y² + z², z² + x² and x² + y² over the mass [Traversaro et al. 2016].
+
+    Args:
+        tensor: entries (xx, xy, xz, yy, yz, zz) about the mass centre (kg m^2), numbers.
 
     Example:
         >>> impossible((1.0, 0, 0, 1.0, 0, 3.0))
@@ -176,13 +206,23 @@ def impossible(tensor: Inertia) -> str:
 
 
 def about_one_axis(tensor: Inertia) -> bool:
-    """Whether there is inertia about one axis and none about those across it."""
+    """Whether there is inertia about one axis and none about those across it.
+
+    Args:
+        tensor: entries (xx, xy, xz, yy, yz, zz), numbers.
+    """
     low, middle, high = principal_moments(tensor)
     return high > 0 and max(abs(low), abs(middle)) <= PHYSICAL * high
 
 
 def principal_moments(tensor: Inertia) -> tuple[float, float, float]:
-    """The eigenvalues of a symmetric tensor, rising: roots of its cubic by the cosine formula."""
+    """The eigenvalues of a symmetric tensor, rising: roots of its cubic by the cosine formula [Smith 1961].
+
+    The tensor is scaled by its largest entry first, because its cube would overflow or vanish.
+
+    Args:
+        tensor: entries (xx, xy, xz, yy, yz, zz), numbers.
+    """
     scale = max(abs(entry) for entry in tensor)
     if scale == 0:
         return (0.0, 0.0, 0.0)

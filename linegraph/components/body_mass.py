@@ -1,4 +1,4 @@
-"""What a body's mass is to the equations: moments about a point, mass centre, central inertia."""
+"""How a body's mass enters the equations: moments about a point, mass centre, central inertia."""
 
 from __future__ import annotations
 
@@ -27,7 +27,16 @@ LEAST_MASS = 1e-37
 def body_moments(body: Body, resolve: Resolve, pose: Placement) -> Moments:
     """A body's mass distribution about the origin of a frame in which the body stands at `pose`.
 
-    From the mass centre in one step: what a shift adds and the next one takes off would leave its rounding.
+    From the mass centre in one step: by way of the body's origin, the terms that the first shift adds and the
+    second removes would leave their rounding.
+
+    Args:
+        body: its mass, and its mass centre or first moment.
+        resolve: from model values to scalars.
+        pose: the place of the body's own frame in the other frame.
+
+    Returns:
+        Mass (kg), first moment (kg m) and second moments (kg m^2), in the axes of the other frame.
     """
     mass = resolve(body.mass)
     given = tuple(resolve(x) for x in body.inertia)
@@ -41,7 +50,12 @@ def body_moments(body: Body, resolve: Resolve, pose: Placement) -> Moments:
 
 
 def mass_center(body: Body, resolve: Resolve) -> Vector:
-    """A body's mass centre in its own frame."""
+    """A body's mass centre from its origin, in its own axes (m).
+
+    Args:
+        body: its mass, and its mass centre or first moment.
+        resolve: from model values to scalars.
+    """
     if body.first is None:
         return resolved(body.center or ZERO, resolve)
     mass = resolve(body.mass)
@@ -54,7 +68,17 @@ def mass_center(body: Body, resolve: Resolve) -> Vector:
 
 
 def central_inertia(body: Body, resolve: Resolve) -> Inertia:
-    """A body's inertia tensor about its mass centre, in its own axes."""
+    """A body's inertia tensor about its mass centre, in its own axes.
+
+    Where the body states the tensor about its origin, ``I - m (c² 1 - c c^T)`` with c the mass centre.
+
+    Args:
+        body: its mass, and its mass centre or first moment.
+        resolve: from model values to scalars.
+
+    Returns:
+        The entries (xx, xy, xz, yy, yz, zz) (kg m^2).
+    """
     given = tuple(resolve(x) for x in body.inertia)
     if body.first is None:
         return given
@@ -68,5 +92,10 @@ def central_inertia(body: Body, resolve: Resolve) -> Inertia:
 
 
 def resolved(a: Vector, resolve: Resolve) -> Vector:
-    """A vector of model values as scalars."""
+    """A vector of model values as scalars.
+
+    Args:
+        a: three model values.
+        resolve: from model values to scalars.
+    """
     return (resolve(a[0]), resolve(a[1]), resolve(a[2]))

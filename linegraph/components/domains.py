@@ -23,7 +23,10 @@ class Variable:
     """A through or an across variable: its name, the usual symbol of its unit, and the unit itself.
 
     Attributes:
-        letter: what names of states begin with: ``v_C1`` is the voltage of C1.
+        name: as engineers call it.
+        symbol: of its unit.
+        unit: exponents of (kg, m, s, A, K).
+        letter: the beginning of names of states: ``v_C1`` is the voltage of C1.
         integral: letter, unit and name of its integral over time, where that has some.
     """
 
@@ -39,6 +42,7 @@ class Domain:
     """A power subspace.
 
     Attributes:
+        name: of the subspace.
         across: measured in parallel, between the ends of an edge.
         through: measured in series, along an edge.
         dimension: 1 for a scalar subspace, 3 for a spatial one.
@@ -46,7 +50,7 @@ class Domain:
             the exception: it is in the graph, but not in the power audit.
 
     Raises:
-        ValueError: the units' product is not what `power` says.
+        ValueError: the units' product is a power (W) and `power` is false, or the reverse.
     """
 
     name: str
@@ -56,7 +60,7 @@ class Domain:
     power: bool = True
 
     def __post_init__(self) -> None:
-        """Hold the definition of a power subspace."""
+        """Require that through times across is a power exactly where `power` is true."""
         product = tuple(a + b for a, b in zip(self.across.unit, self.through.unit, strict=True))
         if (product == POWER) != self.power:
             raise ValueError(f"domain {self.name}: through x across must be a power")
@@ -145,6 +149,9 @@ UNITS: dict[str, Unit] = {
 def exponents(symbol: str) -> Unit:
     """A unit such as ``m^3/s`` or ``N*m`` as exponents of base units: after the slash they are negative.
 
+    Args:
+        symbol: products of symbols of `UNITS` and their powers; those after a slash divide.
+
     Raises:
         ValueError: a symbol is not known, or a power is no number.
 
@@ -178,6 +185,13 @@ def declared(
     others: Mapping[str, Domain],
 ) -> Domain:
     """A domain of a user's own.
+
+    Args:
+        name: unlike those of all other domains.
+        across: name, unit and letter of the across variable.
+        through: name, unit and letter of the through variable.
+        power: whether their product is a power.
+        others: the domains that the model has declared already.
 
     Raises:
         ModelError: the name is taken, a unit is not known, or the units do not make a power.

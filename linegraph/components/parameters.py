@@ -25,6 +25,12 @@ class Parameter:
 
     It calculates as the sympy symbol of its name, so ``m * l**2 / 3`` is a sympy expression.
 
+    Attributes:
+        name: in expressions and in emitted code.
+        value: a number, an expression of other parameters, or None where it has no default.
+        unit: for readers; nothing is converted.
+        about: its meaning, for readers.
+
     Example:
         >>> m, l = Parameter("m", 2.0, "kg"), Parameter("l", 0.5, "m")
         >>> m * l**2 / 3
@@ -79,11 +85,15 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Input(Parameter):
-    """A named input u: known at run time, it may stand in laws and prescribed motions."""
+    """A named input u: known at run time, it may be used in laws and prescribed motions."""
 
 
 def is_number(x: Any) -> bool:
-    """Whether a model value is a plain number: not a name, a text or an expression."""
+    """Whether a model value is a plain number: not a name, a text or an expression.
+
+    Args:
+        x: the model value.
+    """
     return not isinstance(x, (Parameter, str, Formula)) and not hasattr(x, "free_symbols")
 
 
@@ -92,6 +102,14 @@ def resolver(algebra: Algebra, values: Mapping[str, Scalar]) -> Callable[[Any], 
 
     Numbers stay numbers, parameters are looked up in `values`, texts are parsed, formulas and sympy
     expressions are walked.
+
+    Args:
+        algebra: where to calculate.
+        values: scalars of the names that a value may use.
+
+    Returns:
+        The function. It raises `ModelError` for a parameter that `values` lacks and for text that cannot be
+        read.
     """
 
     def resolve(x: Any) -> Scalar:
@@ -115,7 +133,16 @@ def resolver(algebra: Algebra, values: Mapping[str, Scalar]) -> Callable[[Any], 
 def valued(
     parameters: Iterable[Parameter], algebra: Algebra, given: Callable[[Parameter], Scalar]
 ) -> dict[str, Scalar]:
-    """The scalar of every parameter: `given` for independent ones, their expression for derived ones."""
+    """The scalar of every parameter: `given` for independent ones, their expression for derived ones.
+
+    Args:
+        parameters: in an order in which each uses only those before it.
+        algebra: where to calculate.
+        given: the scalar of an independent parameter.
+
+    Returns:
+        Scalars by name.
+    """
     values: dict[str, Scalar] = {}
     for parameter in parameters:
         if parameter.derived:
@@ -128,7 +155,11 @@ def valued(
 
 
 def names_in(x: Any) -> set[str]:
-    """The names a model value depends on; rates as ``der(x)``."""
+    """The names a model value depends on; rates as ``der(x)``.
+
+    Args:
+        x: the model value.
+    """
     if isinstance(x, str):
         x = parse(x)
     if isinstance(x, Formula):
@@ -139,7 +170,18 @@ def names_in(x: Any) -> set[str]:
 
 
 def sample_values(parameters: Iterable[Parameter], algebra: Algebra) -> dict[str, Scalar]:
-    """Each parameter's value, or some positive number where it has none: to judge what holds for all."""
+    """Each parameter's value, or some positive number where it has none.
+
+    At such values properties are tested that are to hold at all values.
+    The numbers are drawn from 0.5 to 2 with a fixed seed, so that the same model gets the same ones.
+
+    Args:
+        parameters: in an order in which each uses only those before it.
+        algebra: where to calculate.
+
+    Returns:
+        Scalars by name.
+    """
     draw = random.Random(0)
 
     def given(parameter: Parameter) -> float:

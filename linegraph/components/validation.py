@@ -1,4 +1,4 @@
-"""Small checks of what a user gives, with errors that name the thing."""
+"""Small checks of values that a user gives, with errors that name the thing."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def require_new(
     """Refuse a name that is taken.
 
     Args:
-        name: what something is to be called.
+        name: the name of a new thing.
         known: the names of all that it shares names with.
-        who: how errors call it.
-        problem: what to tell where the name is known.
+        who: the thing that errors name.
+        problem: the message where the name is known.
 
     Raises:
         ModelError: the name is known.
@@ -43,6 +43,10 @@ def require_new(
 def require_symbols(names: Iterable[str], who: str) -> None:
     """Refuse names of symbols that mean something else in expressions.
 
+    Args:
+        names: of the symbols.
+        who: the thing that errors name.
+
     Raises:
         ModelError: a name is reserved.
     """
@@ -52,12 +56,20 @@ def require_symbols(names: Iterable[str], who: str) -> None:
 
 
 def reserved_problem(name: str) -> str:
-    """What to tell whoever gave a reserved name."""
+    """The message for a reserved name.
+
+    Args:
+        name: the name that was given.
+    """
     return f'"{name}" has a meaning of its own in expressions; choose another name'
 
 
 def plain(x: Any) -> Any:
-    """Sympy's numbers as Python's, anything else as it is."""
+    """SymPy's numbers as Python's, anything else as it is.
+
+    Args:
+        x: a model value.
+    """
     if hasattr(x, "free_symbols") and not x.free_symbols:
         return int(x) if x.is_Integer else float(x)
     return x
@@ -65,6 +77,10 @@ def plain(x: Any) -> Any:
 
 def vector(given: Any, who: str) -> Vector:
     """Three finite numbers or symbols.
+
+    Args:
+        given: a list, a tuple, an array or a SymPy matrix, a row or a column.
+        who: the thing that errors name.
 
     Raises:
         ModelError: another length, or an infinity or NaN.
@@ -81,26 +97,50 @@ def vector(given: Any, who: str) -> Vector:
 
 
 def triple(given: Any, who: str) -> Vector | None:
-    """The same of an optional value."""
+    """Three finite numbers or symbols, or None where nothing is given.
+
+    Args:
+        given: as for `vector`, or None.
+        who: the thing that errors name.
+
+    Raises:
+        ModelError: another length, or an infinity or NaN.
+    """
     return None if given is None else vector(given, who)
 
 
 def listed(given: Any) -> Any:
-    """Tuples, arrays of NumPy's and matrices of sympy's as lists; anything else as it is."""
+    """Tuples, arrays of NumPy's and matrices of SymPy's as lists; anything else as it is.
+
+    Args:
+        given: a model value or several.
+    """
     if hasattr(given, "tolist"):
         given = given.tolist()
     return [plain(part) for part in given] if isinstance(given, (list, tuple)) else given
 
 
 def finite(values: Iterable[Any], who: str) -> None:
-    """Refuse infinities and NaN among plain numbers."""
+    """Refuse infinities and NaN among plain numbers.
+
+    Args:
+        values: model values; symbols and expressions pass.
+        who: the thing that errors name.
+
+    Raises:
+        ModelError: a number is not finite.
+    """
     for value in values:
         if is_number(value) and not math.isfinite(value):
             raise ModelError(who, f"{value} is not a finite number")
 
 
 def rotation_matrix(given: Any, who: str) -> Matrix:
-    """A 3 x 3 matrix whose columns are right-handed orthogonal unit vectors; symbols pass unseen.
+    """A 3 x 3 matrix whose columns are right-handed orthogonal unit vectors; symbols pass unchecked.
+
+    Args:
+        given: the matrix by rows.
+        who: the thing that errors name.
 
     Raises:
         ModelError: another shape, or numbers that are no rotation.
@@ -134,7 +174,12 @@ def _dot(a: Vector, b: Vector) -> float:
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """A hint: the known name most like `name`, or all of a few."""
+    """A hint at the known name most like another, or a list of the first few known names.
+
+    Args:
+        name: the name that is not known.
+        known: the names that are.
+    """
     from difflib import get_close_matches
 
     names = list(known)

@@ -20,7 +20,6 @@ FEWEST_WORDS = 4
 FEWEST_ARGUMENTS = 2
 
 PENDING = {
-    "components",
     #
     "codegen",
     "ir",

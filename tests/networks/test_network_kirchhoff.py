@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from support.plain_values import value
 
 from linegraph.components.scalar.branches import edges_of, projections
-from linegraph.components.scalar.dc_motor import DcMotor
-from linegraph.components.scalar.resistor import Resistor
+from linegraph.components.scalar.electrical import Resistor
+from linegraph.components.transducers.dc_motor import DcMotor
 from linegraph.graph.forest import choose_forest
 from linegraph.ir.dag import Dag
 from linegraph.networks.kirchhoff import Kirchhoff

@@ -10,17 +10,12 @@ from network_parts import parts
 from support.plain_values import value
 
 from linegraph.components.scalar.any_store import AnyStore
-from linegraph.components.scalar.capacitor import Capacitor
-from linegraph.components.scalar.conduction import Conduction
-from linegraph.components.scalar.dc_motor import DcMotor
+from linegraph.components.scalar.couplings import Transformer
+from linegraph.components.scalar.electrical import Capacitor, Inductor, Resistor
 from linegraph.components.scalar.element import AnyElement
-from linegraph.components.scalar.heat_capacity import HeatCapacity
-from linegraph.components.scalar.inductor import Inductor
-from linegraph.components.scalar.losses import Losses
-from linegraph.components.scalar.mass import Mass
-from linegraph.components.scalar.radiation import Radiation
-from linegraph.components.scalar.resistor import Resistor
-from linegraph.components.scalar.transformer import Transformer
+from linegraph.components.scalar.thermal import Conduction, HeatCapacity, Losses, Radiation
+from linegraph.components.scalar.translational import Mass
+from linegraph.components.transducers.dc_motor import DcMotor
 from linegraph.errors import ModelError
 from linegraph.ir.dag import Dag, Node
 from linegraph.networks.variables import constant, key_of

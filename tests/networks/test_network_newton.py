@@ -11,11 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from network_parts import system
 
-from linegraph.components.scalar.current_source import CurrentSource
-from linegraph.components.scalar.diode import Diode
+from linegraph.components.scalar.electrical import CurrentSource, Diode, Resistor, VoltageSource
 from linegraph.components.scalar.element import AnyElement
-from linegraph.components.scalar.resistor import Resistor
-from linegraph.components.scalar.voltage_source import VoltageSource
 from linegraph.errors import ModelError
 from linegraph.networks.equations import network_of
 from linegraph.networks.newton import solved

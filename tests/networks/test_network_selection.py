@@ -9,14 +9,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from network_parts import parts
 
-from linegraph.components.scalar.capacitor import Capacitor
-from linegraph.components.scalar.current_source import CurrentSource
+from linegraph.components.scalar.couplings import Transformer
+from linegraph.components.scalar.electrical import (
+    Capacitor,
+    CurrentSource,
+    Inductor,
+    OpAmp,
+    Resistor,
+    VoltageSource,
+)
 from linegraph.components.scalar.element import AnyElement
-from linegraph.components.scalar.inductor import Inductor
-from linegraph.components.scalar.opamp import OpAmp
-from linegraph.components.scalar.resistor import Resistor
-from linegraph.components.scalar.transformer import Transformer
-from linegraph.components.scalar.voltage_source import VoltageSource
 from linegraph.errors import ModelError
 
 if TYPE_CHECKING:

@@ -14,12 +14,14 @@ from support.plain_values import value
 
 from linegraph.algebra.differentiation import Calculus
 from linegraph.algebra.residues import Residues
-from linegraph.components.scalar.capacitor import Capacitor
-from linegraph.components.scalar.current_source import CurrentSource
+from linegraph.components.scalar.electrical import (
+    Capacitor,
+    CurrentSource,
+    Inductor,
+    Resistor,
+    VoltageSource,
+)
 from linegraph.components.scalar.element import AnyElement
-from linegraph.components.scalar.inductor import Inductor
-from linegraph.components.scalar.resistor import Resistor
-from linegraph.components.scalar.voltage_source import VoltageSource
 from linegraph.ir.dag import Dag
 from linegraph.networks.static import DUAL, EASE, LOOP, Statics, pruned
 

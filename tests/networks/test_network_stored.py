@@ -9,10 +9,8 @@ import pytest
 from network_parts import parts
 from support.plain_values import slope, value
 
-from linegraph.components.scalar.capacitor import Capacitor
-from linegraph.components.scalar.inductor import Inductor
-from linegraph.components.scalar.resistor import Resistor
-from linegraph.components.scalar.translational_spring import TranslationalSpring
+from linegraph.components.scalar.electrical import Capacitor, Inductor, Resistor
+from linegraph.components.scalar.translational import TranslationalSpring
 from linegraph.errors import ModelError
 
 AT_A = ("a", "ground")

@@ -1,9 +1,9 @@
-"""What every constraint answers; each type is one file beside this one.
+"""The base of all constraints; each type is one file beside this one.
 
 A *constraint* is a chord whose across variable is known where its through variable is not: a rigid rod, a
 point in prescribed motion, a wheel that rolls without slip (a velocity source of value 0). Each of its
 *rows* is one reaction direction: a unit force and a unit torque between its ends, whose product with the
-relative motion is what the constraint fixes. All types answer the same questions in the same order:
+relative motion the constraint fixes. All types have the same methods in the same order:
 
     values   prescribed   equations   rows
 """
@@ -29,27 +29,37 @@ if TYPE_CHECKING:
 
 
 class Pose(NamedTuple):
-    """An end of a chord in ground axes: its axes, as columns, and its origin."""
+    """An end of a chord in ground axes.
+
+    Attributes:
+        rotation: its axes as columns: components in them to components in ground axes.
+        origin: its origin from that of ground (m).
+    """
 
     rotation: Matrix
     origin: Vector
 
 
 class Prescribed(NamedTuple):
-    """A value that is a function of time, and its rate."""
+    """A value that is a function of time, and its rate.
+
+    Attributes:
+        x: the value, in the unit that the constraint's `prescribed` states.
+        dx: its derivative with respect to time.
+    """
 
     x: Scalar
     dx: Scalar
 
 
 class Instant(NamedTuple):
-    """Where and when rows are asked for.
+    """Where and when the rows of a constraint are evaluated.
 
     Attributes:
         algebra: where to calculate.
         resolve: from model values to scalars.
-        tail, head: the ends.
-        drive: what is prescribed; None where nothing is.
+        tail, head: the ends, in ground axes.
+        drive: the prescribed values in the order of `prescribed`; None where nothing is.
     """
 
     algebra: Algebra
@@ -69,7 +79,7 @@ class ReactionRow(NamedTuple):
     Attributes:
         position: the equation of position, 0 where it holds; None where only velocities are constrained.
         force, torque: on the head, the torque about the head's origin.
-        rate: of what is prescribed.
+        rate: the prescribed value of that product; 0 where nothing is prescribed.
     """
 
     position: Scalar | None
@@ -98,17 +108,17 @@ class Constraint:
 
     @property
     def ends(self) -> tuple[str, str]:
-        """The terminals its edges run between."""
+        """The terminals (tail, head) that its edges run between."""
         return self.between
 
     def values(self) -> tuple[Any, ...]:
-        """The model values it depends on."""
+        """The model values it depends on; those left out are not among them."""
         own = [getattr(self, f.name) for f in fields(self) if f.name not in _PLACES]
         flat = [x for value in own for x in (value if isinstance(value, tuple) else (value,))]
         return tuple(x for x in flat if x is not None and not isinstance(x, bool))
 
     def prescribed(self) -> tuple[tuple[Any, Quantity], ...]:
-        """What may be a function of time: the value or None, and what it is."""
+        """For each field that may be a function of time: its value or None, and the quantity it is."""
         return ()
 
     def lengths(self) -> tuple[Any, ...]:
@@ -120,7 +130,11 @@ class Constraint:
         raise NotImplementedError
 
     def rows(self, at: Instant) -> tuple[ReactionRow, ...]:
-        """The rows at a state, in the order of `equations`."""
+        """The rows at a state, in the order of `equations`.
+
+        Args:
+            at: ends, scalars and prescribed values at the state.
+        """
         raise NotImplementedError
 
 
@@ -129,6 +143,10 @@ _PLACES = ("name", "between")
 
 def aligned(limit: Any, who: str) -> Any:
     """A constraint with its axis, if it has one, scaled to length 1.
+
+    Args:
+        limit: the constraint.
+        who: the thing that errors name.
 
     Raises:
         ModelError: the axis has no length.

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 class Driver(Constraint):
     """The head's origin moves as prescribed, seen from the tail: ``d . e - x(t) = 0`` for each axis e given.
 
-    The multipliers are the forces that it takes. A driver of a joint's own coordinate is the joint's
-    `motion`.
+    d runs from the tail's origin to the head's, e is an axis of the tail. The multipliers are the forces that
+    it takes, along these axes on the head (N). A driver of a joint's own coordinate is the joint's `motion`.
 
     Attributes:
         x, y, z: place in the tail's axes (m): an expression of parameters and t, or "input"; an axis
@@ -38,14 +38,14 @@ class Driver(Constraint):
     needs = (("x", "y", "z"),)
 
     def prescribed(self) -> tuple[tuple[Any, Quantity], ...]:
-        """The three places."""
+        """The places x, y and z (m), each given or None."""
         return tuple(
             (value, Quantity(f"{self.name}_{c}", "m", f"place {c} of driver {self.name}"))
             for c, value in zip("xyz", (self.x, self.y, self.z), strict=True)
         )
 
     def equations(self) -> tuple[tuple[Quantity, bool], ...]:
-        """A force along each axis that is given."""
+        """A force along each axis that is given (N), with an equation of position."""
         return tuple(
             (
                 Quantity(
@@ -58,7 +58,7 @@ class Driver(Constraint):
         )
 
     def rows(self, at: Instant) -> tuple[ReactionRow, ...]:
-        """Along the tail's axes."""
+        """A unit force along each given axis of the tail, resolved in ground axes."""
         line = subtract(at.head.origin, at.tail.origin)
         found = []
         for axis, given in zip(IDENTITY_MATRIX, at.drive, strict=True):

@@ -34,15 +34,18 @@ class Relation:
     kind: ClassVar[str] = "relation"
 
     def values(self) -> tuple[Any, ...]:
-        """The model values it depends on."""
+        """The one model value it depends on, its expression."""
         return (self.rate,)
 
     def equation(self) -> Quantity:
-        """Its multiplier."""
+        """Its multiplier, a generalised force in the unit of power over that of the rate."""
         return Quantity(f"{self.name}_multiplier", "", f"multiplier of relation {self.name}")
 
     def linear(self, algebra: Algebra, evaluate: Any, count: int) -> tuple[list[Scalar], Scalar]:
-        """The coefficients of `count` velocities and what is left: ``rate = a v - b`` gives (a, b).
+        """The coefficients of its velocities and the rest: ``rate = a v - b`` gives (a, b).
+
+        The expression is linear in the velocities, so its values at zero and at unit velocities determine it
+        exactly; differentiating the formula would have to follow all names in it.
 
         Args:
             algebra: where to calculate.

@@ -25,7 +25,9 @@ class Rolling(Constraint):
         touching     n . d - radius |n - (n.s) s| - crown = 0
         no slip      the velocity of the wheel's material there is that of the plane's
 
-    Three multipliers: the normal force, the forces along the track (the direction s x n) and across it.
+    d runs from the plane's origin to the centre. Three multipliers act on the wheel (N): the normal force,
+    the forces along the track (the direction s x n) and across it. A wheel that lies flat, s along n, has no
+    lowest point.
 
     Attributes:
         axis: of the wheel, in the head's axes; left out for a ball.
@@ -45,7 +47,7 @@ class Rolling(Constraint):
     needs = (("radius",),)
 
     def __post_init__(self) -> None:
-        """Raises `ModelError` where the wheel has no size."""
+        """Refuse a wheel of no size, or of a negative one, with a `ModelError`."""
         for name, size in (("radius", self.radius), ("crown", self.crown)):
             if isinstance(size, (int, float)) and size < 0:
                 raise ModelError(f'rolling "{self.name}"', f"its {name} is negative ({size})")
@@ -53,11 +55,11 @@ class Rolling(Constraint):
             raise ModelError(f'rolling "{self.name}"', "has no radius")
 
     def lengths(self) -> tuple[Any, ...]:
-        """Its radii."""
+        """Radius and crown, the lever arms of its forces about the centre (m)."""
         return (self.radius, self.crown)
 
     def equations(self) -> tuple[tuple[Quantity, bool], ...]:
-        """Normal, along and across."""
+        """Normal force with an equation of position, and forces along and across the track without (N)."""
         return tuple(
             (
                 Quantity(
@@ -73,7 +75,7 @@ class Rolling(Constraint):
         )
 
     def rows(self, at: Instant) -> tuple[ReactionRow, ...]:
-        """Forces at the point of contact."""
+        """Unit forces at the point of contact, their torques taken about the centre, in ground axes."""
         normal, along, across = _columns(at.tail)
         radius, crown = at.resolve(self.radius), at.resolve(self.crown)
         line = subtract(at.head.origin, at.tail.origin)

@@ -1,14 +1,14 @@
-"""What every force element answers; each type is one file beside this one.
+"""The base of all force elements; each type is one file beside this one.
 
 An *element* is an edge with a law: its through variable, a force or a torque, follows from its across
 variable and that variable's rate. It acts between two points, along the line that joins them, or inside a
 joint, along the joint's coordinate:
 
-    between = (tail, head)    x is the distance of the two points (m), v its rate
-    joint = name              x is the joint's coordinate (rad or m), v its rate
+    between = (tail, head)    x is the distance of the two points (m), v its rate (m/s)
+    joint = name              x is the joint's coordinate (rad or m), v its rate (rad/s or m/s)
 
-A positive through variable pulls: points together, a coordinate back. All types answer the same
-questions in the same order:
+A positive through variable pulls: points together, a coordinate back. It takes in the power ``through v``.
+All types have the same methods in the same order:
 
     values   through   potential
 """
@@ -24,13 +24,18 @@ if TYPE_CHECKING:
 
 
 class Resolve(Protocol):
-    """From a model value, and further names such as x and v, to a scalar.
+    """A function from a model value, and values of further names such as x and v, to a scalar.
 
     The value has no name of its own, so that a law may use any.
     """
 
     def __call__(self, value: Any, /, **names: Scalar) -> Scalar:
-        """The scalar of a value."""
+        """The scalar of a model value.
+
+        Args:
+            value: a number, a parameter, the text of an expression, a formula or a SymPy expression.
+            names: scalars of names that the expression may use besides those of the model.
+        """
 
 
 @dataclass(frozen=True)
@@ -54,16 +59,31 @@ class Element:
     """Of each group of fields, a model file gives at least one."""
 
     def values(self) -> tuple[Any, ...]:
-        """The model values its law depends on."""
+        """The model values its law depends on; those left out are not among them."""
         own = [getattr(self, f.name) for f in fields(self) if f.name not in _PLACES]
         return tuple(value for value in own if value is not None)
 
     def through(self, algebra: Algebra, x: Scalar, v: Scalar, resolve: Resolve) -> Scalar:
-        """The force (N) or torque (N m) at (x, v)."""
+        """The force (N) or torque (N m) at (x, v); positive pulls points together, a coordinate back.
+
+        Args:
+            algebra: where to calculate.
+            x: the distance of the points (m), or the joint's coordinate (rad or m).
+            v: the rate of x.
+            resolve: from model values to scalars.
+        """
         raise NotImplementedError
 
     def potential(self, algebra: Algebra, x: Scalar, resolve: Resolve) -> Scalar:
-        """The energy stored (J); 0 for what stores none, or not by a known formula."""
+        """The energy stored at x (J), whose derivative is the force at v = 0.
+
+        0 for elements that store none, or that have no formula for it.
+
+        Args:
+            algebra: where to calculate.
+            x: the distance of the points (m), or the joint's coordinate (rad or m).
+            resolve: from model values to scalars.
+        """
         return 0
 
 

@@ -1,4 +1,4 @@
-"""The damper: a force against the rate of change."""
+"""The damper: a force in proportion to a rate."""
 
 from __future__ import annotations
 
@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 class Damper(Element):
     """A viscous damper: ``through = damping v``.
 
+    v > 0 lengthens the element, or moves the coordinate forward, and the damper pulls back. It turns
+    ``damping v²`` (W) into heat.
+
     Attributes:
         damping: N s/m, or N m s/rad in a revolute joint.
 
@@ -30,5 +33,5 @@ class Damper(Element):
     needs = (("damping",),)
 
     def through(self, algebra: Algebra, x: Scalar, v: Scalar, resolve: Resolve) -> Scalar:
-        """Against the rate."""
+        """``damping v`` (N or N m), opposed to the rate."""
         return resolve(self.damping) * v

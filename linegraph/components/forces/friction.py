@@ -17,6 +17,10 @@ if TYPE_CHECKING:
 class Friction(Element):
     """Friction: ``through = viscous v + coulomb tanh(v / width)``.
 
+    It opposes the rate v. The hyperbolic tangent makes the jump of Coulomb's law at standstill smooth
+    [Andersson et al. 2007]: without it the law has no derivative there and no unique force at rest. The
+    price is that a load smaller than `coulomb` lets the element creep, at a rate of the order of `width`.
+
     Attributes:
         viscous: N s/m, or N m s/rad in a revolute joint.
         coulomb: the force or torque of dry friction in motion (N or N m).
@@ -34,6 +38,6 @@ class Friction(Element):
     needs = (("viscous", "coulomb"),)
 
     def through(self, algebra: Algebra, x: Scalar, v: Scalar, resolve: Resolve) -> Scalar:
-        """Against the rate."""
+        """Viscous and dry friction (N or N m), opposed to the rate."""
         dry = algebra.function("tanh", v / resolve(self.width))
         return resolve(self.viscous) * v + resolve(self.coulomb) * dry

@@ -17,8 +17,10 @@ if TYPE_CHECKING:
 class Law(Element):
     """An element given by `through`, an expression in x, v, t, coordinates, inputs and parameters.
 
-    Gravity between two bodies, an actuator with its own characteristic, a cable that only pulls. Of forces
-    that depend on x and parameters alone the potential energy is found by integration, where rules are known.
+    ``through = force(x, v, t, ...)``, where a positive force pulls the points together or the coordinate
+    back. Gravity between two bodies, an actuator with its own characteristic, a cable that only pulls. Of
+    forces that depend on x and parameters alone the potential energy is found by integration, where rules are
+    known.
 
     Attributes:
         force: the tension (N, or N m in a revolute joint).
@@ -37,5 +39,5 @@ class Law(Element):
     needs = (("force",),)
 
     def through(self, algebra: Algebra, x: Scalar, v: Scalar, resolve: Resolve) -> Scalar:
-        """As the expression says."""
+        """The value of the expression at (x, v) (N or N m)."""
         return resolve(self.force, x=x, v=v)

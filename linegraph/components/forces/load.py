@@ -14,7 +14,9 @@ WORLD, BODY = "world", "body"
 class Load:
     """A force (N) and a torque (N m) on a body at a terminal, from ground.
 
-    Its edges run from ground to the terminal, in translation and in rotation.
+    Its edges run from ground to the terminal, in translation and in rotation; their through variables are the
+    force and the torque that it exerts on the body. It does the work ``force . velocity`` of the terminal's
+    origin and ``torque . angular velocity`` of the body.
 
     Attributes:
         name: also the name of its edges.
@@ -36,5 +38,5 @@ class Load:
     kind: ClassVar[str] = "load"
 
     def values(self) -> tuple[Any, ...]:
-        """The model values it depends on."""
+        """The six model values of force and torque."""
         return (*self.force, *self.torque)

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 class Spring(Element):
     """A spring: ``through = stiffness (x - length)``, or `force` as a law of the stretch and its rate.
 
+    Stretched, x > length, it pulls the points together or the coordinate back. Its energy is
+    ``stiffness (x - length)² / 2`` (J), or the integral of the law over the stretch.
+
     Attributes:
         stiffness: N/m, or N m/rad in a revolute joint.
         length: x of the unstrained spring.
@@ -38,14 +41,14 @@ class Spring(Element):
     needs = (("stiffness", "force"),)
 
     def through(self, algebra: Algebra, x: Scalar, v: Scalar, resolve: Resolve) -> Scalar:
-        """The tension."""
+        """The tension (N) or torque (N m) of the stretch ``x - length``."""
         stretch = x - resolve(self.length)
         if self.force is not None:
             return resolve(self.force, x=stretch, v=v)
         return resolve(self.stiffness) * stretch
 
     def potential(self, algebra: Algebra, x: Scalar, resolve: Resolve) -> Scalar:
-        """Half the stiffness times the stretch squared; that of a law is integrated (`potentials`)."""
+        """``stiffness (x - length)² / 2`` (J); 0 for a law, which `dynamics.potentials` integrates."""
         if self.force is not None:
             return 0
         stretch = x - resolve(self.length)

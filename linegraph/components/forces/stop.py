@@ -1,4 +1,4 @@
-"""Stops: a smooth law that keeps x within limits."""
+"""Stops: a smooth law that keeps a distance or a coordinate within limits."""
 
 from __future__ import annotations
 
@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 class Stop(Element):
     """Elastic limits: ``through = stiffness (p(x - upper) - p(lower - x))`` plus damping in contact.
 
-    p(d) = (d + sqrt(d^2 + width^2)) / 2 is a smooth max(d, 0): far inside the limits it falls off as
-    width^2 / (4 d). In contact the damping acts in proportion to dp/dd, which rises from 0 to 1.
+    p(d) = (d + sqrt(d^2 + width^2)) / 2 is a smooth max(d, 0): far inside the limits it falls off as width^2
+    / (4 d). In contact the damping acts in proportion to dp/dd, which rises from 0 to 1, so that it does not
+    set in with a jump. Beyond `upper` the element pulls back, beyond `lower` it pushes.
 
     Attributes:
         lower, upper: limits of x; None where there is none.
@@ -40,7 +41,7 @@ class Stop(Element):
     needs = (("lower", "upper"), ("stiffness",))
 
     def through(self, algebra: Algebra, x: Scalar, v: Scalar, resolve: Resolve) -> Scalar:
-        """Back into the limits."""
+        """The force (N) or torque (N m) of both limits, back into the range between them."""
         total: Scalar = 0
         if self.upper is not None:
             total = total + self._push(algebra, x - resolve(self.upper), v, resolve)
@@ -56,7 +57,7 @@ class Stop(Element):
         return resolve(self.stiffness) * depth_rounded + resolve(self.damping) * (contact * rate)
 
     def potential(self, algebra: Algebra, x: Scalar, resolve: Resolve) -> Scalar:
-        """What the rounded springs hold: zero at the limits themselves."""
+        """``stiffness`` times the integral of p over the depth beyond each limit (J), 0 at the limits."""
         total: Scalar = 0
         if self.upper is not None:
             total = total + self._held(algebra, x - resolve(self.upper), resolve)

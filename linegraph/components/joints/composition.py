@@ -1,4 +1,4 @@
-"""Motions one after the other: what joints of several parts, without bodies in between, are made of."""
+"""Motions one after the other: the parts of joints that have several, without bodies in between."""
 
 from __future__ import annotations
 
@@ -59,8 +59,8 @@ def compose(
 
         w = R2^T w1 + w2                        u = R2^T (u1 + w1 x d2) + u2
 
-    Their derivatives in head axes bring w1 x w2, u1 x w2 and w1 x u2 into the biases: what the first part
-    causes turns against the head axes with -w2, and the lever d2 grows with u2.
+    Their derivatives in head axes bring w1 x w2, u1 x w2 and w1 x u2 into the biases: the columns of the
+    first part turn relative to the head axes with -w2, and the lever d2 grows with u2.
 
     Args:
         first: the motion at the tail.
@@ -94,7 +94,13 @@ def compose(
 
 
 def joined(outer: Rotation, inner: Rotation) -> Rotation:
-    """The product of two rotations; factors of one kind that meet in it become one.
+    """The product of two rotations, with factors of one kind that meet in it made one.
+
+    The product ``outer @ inner`` would keep both; two turns about one axis then cost twice the operations.
+
+    Args:
+        outer: applied last: components in its head's axes to those in its tail's.
+        inner: applied first.
 
     Example:
         >>> joined(Rotation((Turn(2, 0, 1),)), Rotation((Turn(2, 0.8, 0.6),))).factors
@@ -117,7 +123,12 @@ def joined(outer: Rotation, inner: Rotation) -> Rotation:
 
 
 def chain(motions: Sequence[Motion], v: Sequence[Scalar]) -> Motion:
-    """Motions in the same axes one after the other, tail to head; `v` holds all their velocities."""
+    """The motion of several joints one after the other, tail to head.
+
+    Args:
+        motions: at least one, all in the same axes.
+        v: the velocities of all of them in order.
+    """
     ends = tuple(accumulate(len(motion.angular) for motion in motions))
 
     def extend(so_far: Motion, k: int) -> Motion:
@@ -130,6 +141,11 @@ def chain(motions: Sequence[Motion], v: Sequence[Scalar]) -> Motion:
 def turn(axis: Vector, cosine: Scalar, sine: Scalar) -> Motion:
     """The motion of a hinge about a constant direction.
 
+    Args:
+        axis: the direction, of unit length, in the axes of both frames.
+        cosine: of the angle, right-handed about the axis.
+        sine: of the same angle.
+
     Example:
         >>> turn((0, -1, 0), 0.8, 0.6).rotation.factors
         (Turn(axis=1, cosine=0.8, sine=-0.6),)
@@ -141,13 +157,25 @@ def turn(axis: Vector, cosine: Scalar, sine: Scalar) -> Motion:
 def turns(
     algebra: Algebra, axes: Sequence[Vector], q: Sequence[Scalar], v: Sequence[Scalar]
 ) -> Motion:
-    """Hinges one after the other, each about a constant direction in the axes left by those before it."""
+    """The motion of hinges one after the other.
+
+    Args:
+        algebra: where to calculate.
+        axes: a direction of unit length for each hinge, in the axes left by those before it.
+        q: their angles (rad).
+        v: their rates (rad/s).
+    """
     hinges = [turn(a, algebra.cos(x), algebra.sin(x)) for a, x in zip(axes, q, strict=True)]
     return chain(hinges, v)
 
 
 def hinges(joint: Joint, axes: Sequence[Vector]) -> tuple[tuple[Joint, Rotation], ...]:
-    """Hinges about constant directions as a joint's sequence."""
+    """Hinges about constant directions, as the `sequence` of a joint.
+
+    Args:
+        joint: the joint they make up; their names begin with its name.
+        axes: the direction of each, of unit length, in aligned axes.
+    """
     return tuple(
         (Revolute(f"{joint.name}_angle{k}", joint.between), onto(axis))
         for k, axis in enumerate(axes, 1)
@@ -155,7 +183,12 @@ def hinges(joint: Joint, axes: Sequence[Vector]) -> tuple[tuple[Joint, Rotation]
 
 
 def reoriented(motion: Motion, change: Rotation) -> Motion:
-    """A motion resolved in other axes, by the constant rotation from its own to those."""
+    """A motion resolved in other axes.
+
+    Args:
+        motion: rotation, columns and biases, tail and head in the same axes.
+        change: the constant rotation from these axes to the other ones.
+    """
     out = change.out
     return Motion(
         _conjugate(motion.rotation, change),
@@ -181,6 +214,10 @@ def _conjugate(rotation: Rotation, change: Rotation) -> Rotation:
 
 def direction(given: Sequence[Any], who: str) -> Vector:
     """A direction as a user writes it, scaled to length 1.
+
+    Args:
+        given: three numbers, parameters or SymPy expressions.
+        who: the thing that errors name.
 
     Raises:
         ModelError: not three finite numbers or symbols, or no length.
@@ -217,13 +254,25 @@ def _across(a: Vector, z: Vector) -> Vector:
 
 
 def parallel(a: Vector, b: Vector) -> bool:
-    """Whether two unit vectors are known to be in line; symbols never are."""
+    """Whether two unit vectors are known to be parallel or opposite.
+
+    The sine of the angle between them is compared with `PARALLEL`. Vectors with symbols are not: an axis
+    must not be dropped because two coincide for some values of the parameters.
+
+    Args:
+        a: a unit vector.
+        b: another one, in the same axes.
+    """
     normal = cross(a, b)
     return _known(normal) and bool(dot(normal, normal) < PARALLEL * PARALLEL)
 
 
 def onto(axis: Vector) -> Rotation:
-    """A constant rotation that takes z to a direction: of all these one that is cheap to apply."""
+    """A constant rotation that takes z to a direction, of all these one that takes few operations.
+
+    Args:
+        axis: the direction, of unit length.
+    """
     smallest = constant(z_onto(axis))
     x, y, z = axis
     if not any(isinstance(factor, Full) for factor in smallest.factors) or not _known(axis):
@@ -234,7 +283,11 @@ def onto(axis: Vector) -> Rotation:
 
 
 def constant(matrix: Matrix) -> Rotation:
-    """The cheapest form of a constant matrix that was computed, with rounding."""
+    """The cheapest form of a constant rotation that was computed, with its rounding removed.
+
+    Args:
+        matrix: orthogonal up to `DUST`.
+    """
     return rotation_of(snapped(matrix, DUST))
 
 
@@ -244,13 +297,30 @@ def _known(a: Vector) -> bool:
 
 
 def seen(axis: Vector, axes: Matrix) -> Vector:
-    """A direction resolved in the axes that are the columns of a matrix; z stays exact."""
+    """A direction resolved in other axes; the third of these stays exactly (0, 0, 1).
+
+    Args:
+        axis: the direction.
+        axes: the other axes as the columns of a matrix, in the axes that `axis` is resolved in.
+    """
     inward = transpose(axes)
     return (0, 0, 1) if axis == inward[2] else times(inward, axis)
 
 
 def angles_of(algebra: Algebra, sequence: str, rotation: Matrix) -> tuple[Scalar, ...]:
-    """The three angles of turns about these axes that make up a rotation.
+    """The angles of three turns, each about an axis left by those before it, that make up a rotation.
+
+    All are arctangents of two arguments, so that they keep their accuracy near 90 degrees; Diebel lists the
+    matrices of all twelve sequences [Diebel 2006].
+
+    Args:
+        algebra: where to calculate.
+        sequence: the axes in order, such as "xyz" or "zxz".
+        rotation: a 3 x 3 matrix, head components to tail components.
+
+    Returns:
+        Three angles (rad): the first and the last between -pi and pi; the second between -pi/2 and pi/2 for
+        three different axes, and between 0 and pi where the first is also the last.
 
     Example:
         >>> from linegraph.algebra.protocol import Floats
@@ -279,7 +349,11 @@ def _square(x: Scalar) -> Scalar:
 
 
 def reciprocal(columns: Sequence[Vector]) -> tuple[Vector, ...]:
-    """Of two or three vectors in their span those with ``r_a . s_b = 1`` where a = b, else 0."""
+    """The reciprocal basis of two or three vectors: in their span, ``r_a . s_b = 1`` where a = b, else 0.
+
+    Args:
+        columns: the vectors s, linearly independent.
+    """
     if len(columns) == 2:
         a, b = columns
         common, aa, bb = dot(a, b), dot(a, a), dot(b, b)

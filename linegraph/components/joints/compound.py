@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 PARTS: dict[str, type[Joint]] = {
     kind.kind: kind for kind in (Revolute, Prismatic, Cylindrical, Helical, Planar)
 }
-"""What a compound joint may consist of: joints with one axis."""
+"""The possible parts of a compound joint: joints with one axis."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,8 @@ class Compound(Joint):
     """A sequence of simple joints from tail to head; the head frame of each is the tail frame of the next.
 
     The same mechanism as with massless bodies between the parts. q and v are those of the parts in order,
-    named as if the parts were joints called NAME_1, NAME_2, ...
+    named as if the parts were joints called NAME_1, NAME_2, ... `compose` puts their motions together:
+    R = R1 R2 ..., and the columns and biases of each part carried to the last head frame.
 
     Attributes:
         parts: for each part its kind (revolute, prismatic, cylindrical, helical or planar) and its axis, in
@@ -68,7 +69,7 @@ class Compound(Joint):
     kind = "compound"
 
     def __post_init__(self) -> None:
-        """Raises `ModelError` where a part cannot be, or there are none or too many."""
+        """Refuse no parts, parts that cannot be, and more than six freedoms, with a `ModelError`."""
         who = f'joint "{self.name}"'
         if not self._joints:
             raise ModelError(who, "has no parts; give at least one")
@@ -82,24 +83,24 @@ class Compound(Joint):
 
     @property
     def freedoms(self) -> int:
-        """Those of all parts."""
+        """The freedoms of all parts together."""
         return sum(part.freedoms for part in self._joints)
 
     @property
     def singular(self) -> bool:
-        """Nothing keeps the axes of several parts independent."""
+        """True with several parts: nothing keeps their axes independent."""
         return len(self._joints) > 1
 
     def positions(self) -> tuple[Quantity, ...]:
-        """Those of all parts."""
+        """The coordinates of all parts in order."""
         return tuple(quantity for part in self._joints for quantity in part.positions())
 
     def velocities(self) -> tuple[Quantity, ...]:
-        """Those of all parts."""
+        """The velocities of all parts in order."""
         return tuple(quantity for part in self._joints for quantity in part.velocities())
 
     def resolved(self, resolve: Callable[[Any], Scalar]) -> Self:
-        """Each part with its axis and its options as scalars."""
+        """The same joint, each part with its axis and its options as scalars."""
         joints = []
         for part in self._joints:
             axis = tuple(resolve(x) for x in part.axis)
@@ -114,7 +115,7 @@ class Compound(Joint):
         return common_axes([*others, self._joints[last].axis])
 
     def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
-        """The motions of the parts, composed in the common axes."""
+        """The motions of the parts, composed in the aligned axes."""
         motions = [
             reoriented(part.motion(algebra, at, rates), axes)
             for (part, at, rates), (_, axes) in zip(
@@ -124,14 +125,14 @@ class Compound(Joint):
         return chain(motions, v)
 
     def sequence(self) -> tuple[tuple[Joint, Rotation], ...]:
-        """The parts."""
+        """Each part with the rotation from its own axes to the aligned ones."""
         axes = self.alignment()
         return tuple((part, _placed(part, axes)) for part in self._joints)
 
     def rates(
         self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]
     ) -> tuple[Scalar, ...]:
-        """Those of the parts."""
+        """The rates of the coordinates of all parts in order."""
         return tuple(
             rate
             for part, at, rates in self._shares(q, v)
@@ -139,7 +140,7 @@ class Compound(Joint):
         )
 
     def adjoint(self, v: tuple[Scalar, ...]) -> tuple[tuple[Scalar, ...], ...]:
-        """Those of the parts, one after the other on the diagonal."""
+        """The adjoints of the parts, as blocks on the diagonal."""
         rows: list[tuple[Scalar, ...]] = []
         for part in self._joints:
             first = len(rows)
@@ -149,7 +150,11 @@ class Compound(Joint):
         return tuple(rows)
 
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
-        """Raises `ModelError`: what it leaves free depends on how its parts stand."""
+        """Refuse it as a chord: its free directions depend on the positions of its parts.
+
+        Raises:
+            ModelError: always.
+        """
         problem = (
             "is compound and closes a loop; choose a tree that has it as a branch, or write its parts as "
             "joints with massless bodies in between"

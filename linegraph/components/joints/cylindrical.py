@@ -27,7 +27,9 @@ if TYPE_CHECKING:
 class Cylindrical(Joint):
     """A shaft in a sleeve: the head turns about `axis` and slides along it, independently.
 
-    q = (angle (rad), displacement (m)), v their rates (rad/s, m/s).
+    q = (angle (rad), displacement (m)), v their rates (rad/s, m/s). Relative motion in aligned axes: R = a
+    turn about z by q1, d = z q2, w = z v1, u = z v2. The efforts are a torque about the axis (N m) and a
+    force along it (N), on the head.
 
     Example:
         >>> [c.unit for c in Cylindrical("sleeve", ("housing", "shaft")).velocities()]
@@ -39,7 +41,7 @@ class Cylindrical(Joint):
     slides = (2,)
 
     def positions(self) -> tuple[Quantity, ...]:
-        """The angle and the displacement."""
+        """The angle (rad), then the displacement (m)."""
         what = f"of cylindrical joint {self.name}"
         return (
             Quantity(f"{self.name}_angle", "rad", f"angle {what}"),
@@ -47,7 +49,7 @@ class Cylindrical(Joint):
         )
 
     def velocities(self) -> tuple[Quantity, ...]:
-        """Their rates."""
+        """The rate of the angle (rad/s), then that of the displacement (m/s)."""
         what = f"of cylindrical joint {self.name}"
         return (
             Quantity(f"{self.name}_angle", "rad/s", f"angular rate {what}"),
@@ -55,11 +57,11 @@ class Cylindrical(Joint):
         )
 
     def alignment(self) -> Matrix:
-        """Z onto the axis."""
+        """The smallest rotation that takes z to the axis."""
         return z_onto(self.axis)
 
     def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
-        """A turn about z and a shift along it."""
+        """A turn about z and a shift along it, which commute. The columns are constant: no bias."""
         turn = Turn(2, algebra.cos(q[0]), algebra.sin(q[0]))
         z = (0, 0, 1)
         return Motion(Rotation((turn,)), (0, 0, q[1]), (z, ZERO), (ZERO, z))
@@ -72,11 +74,11 @@ class Cylindrical(Joint):
         return round_apart(head)
 
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
-        """No shift but along the axis, no turn but about it."""
+        """Forces and torques along and about x and y: no shift but along z, no turn but about it."""
         return (*NO_SHIFT_ACROSS_Z, *NO_TURN_ACROSS_Z)
 
     def measured(
         self, algebra: Algebra, rotation: Matrix, displacement: Vector
     ) -> tuple[Scalar, ...]:
-        """The angle about z and the shift along it."""
+        """The angle about z (rad), between -pi and pi, and the shift along z (m)."""
         return (angle_about_z(algebra, rotation), displacement[2])

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 class Fixed(Joint):
     """Head and tail frames coincide: the two bodies are one.
 
+    R = 1, d = 0, w = 0, u = 0; it has no coordinates, and as a chord six reactions.
+
     Example:
         >>> Fixed("bolt", ("arm.tip", "tool")).positions()
         ()
@@ -29,23 +31,23 @@ class Fixed(Joint):
     freedoms = 0
 
     def positions(self) -> tuple[Quantity, ...]:
-        """None."""
+        """Empty: it has no coordinates."""
         return ()
 
     def velocities(self) -> tuple[Quantity, ...]:
-        """None."""
+        """Empty: it has no velocities."""
         return ()
 
     def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
-        """No motion."""
+        """No rotation, no displacement and no columns."""
         return Motion(Rotation(), ZERO, (), ())
 
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
-        """No motion at all."""
+        """Three forces and three torques: no shift and no turn."""
         return (*NO_SHIFT, *NO_TURN)
 
     def measured(
         self, algebra: Algebra, rotation: Matrix, displacement: Vector
     ) -> tuple[Scalar, ...]:
-        """There is nothing to measure."""
+        """Empty: it has no coordinates to measure."""
         return ()

@@ -26,7 +26,10 @@ class Free(Joint):
 
     q = (position in the tail frame (m), unit quaternion x, y, z, w); v = (velocity of the head's origin
     (m/s), angular velocity (rad/s)), both in head axes. Or, with `angles`, q = (position, three angles) and
-    v = q̇, with singular orientations as `Spherical` tells. It carries no effort.
+    v = q̇, with the singular orientations described at `Spherical`. It carries no effort.
+
+    With the quaternion, R = R(q), d = position, w = v4..v6, u = v1..v3, and the rates of q are ``R u`` and
+    ``1/2 q (w, 0)``: neither the columns nor, for a body that moves alone, M depend on q.
 
     Attributes:
         angles: the sequence of axes of the turns, e.g. "zyx"; None for the quaternion.
@@ -44,7 +47,7 @@ class Free(Joint):
     freedoms = 6
 
     def __post_init__(self) -> None:
-        """Raises `ModelError` where the sequence of axes is unknown."""
+        """Refuse an unknown sequence of axes with a `ModelError` that lists the known ones."""
         _ = self._ball
 
     @property
@@ -54,11 +57,11 @@ class Free(Joint):
 
     @property
     def singular(self) -> bool:
-        """With angles, where the first and the third axis are in line."""
+        """True with angles: where the first and the third axis are in line."""
         return self.angles is not None
 
     def positions(self) -> tuple[Quantity, ...]:
-        """Position, and quaternion or angles."""
+        """Position in the tail frame (m), then the quaternion or the angles (rad)."""
         place = (
             Quantity(f"{self.name}_{c}", "m", f"position {c} of {self.name}, in the tail frame")
             for c in "xyz"
@@ -66,7 +69,7 @@ class Free(Joint):
         return (*place, *self._ball.positions())
 
     def velocities(self) -> tuple[Quantity, ...]:
-        """Velocity and angular velocity in head axes, or the rates of position and angles."""
+        """Velocity (m/s) and angular velocity (rad/s) in head axes, or the rates of position and angles."""
         stem, frame = ("v", "head axes") if self.angles is None else ("", "tail axes")
         linear = (
             Quantity(f"{self.name}_{stem}{c}", "m/s", f"velocity {c} of {self.name}, in {frame}")
@@ -75,11 +78,14 @@ class Free(Joint):
         return (*linear, *self._ball.velocities())
 
     def rest(self) -> tuple[float, ...]:
-        """Origin, and identity quaternion or no angles."""
+        """The tail's origin, and the quaternion of no turn or three angles of 0."""
         return (0.0, 0.0, 0.0, *self._ball.rest())
 
     def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
-        """Shift and turn; with a quaternion the velocities are the components in head axes themselves."""
+        """A shift, then a turn; with a quaternion the velocities are the components in head axes themselves.
+
+        With angles the shift comes first in tail axes, and the turn makes its columns depend on q.
+        """
         at, none = (q[0], q[1], q[2]), (ZERO, ZERO, ZERO)
         turn = self._ball.motion(algebra, q[3:], v[3:])
         if self.angles is None:
@@ -87,7 +93,7 @@ class Free(Joint):
         return compose(Motion(Rotation(), at, none, IDENTITY_MATRIX), turn, v[:3], v[3:])
 
     def sequence(self) -> tuple[tuple[Joint, Rotation], ...]:
-        """Three shifts and three hinges, where it has angles."""
+        """Three sliders along the tail's axes, then three hinges, where it has angles; else none."""
         if self.angles is None:
             return ()
         shifts = tuple(
@@ -99,7 +105,7 @@ class Free(Joint):
     def rates(
         self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]
     ) -> tuple[Scalar, ...]:
-        """Position rate R v and quaternion rate; v itself with angles."""
+        """``R u`` for the position and ``1/2 q (w, 0)`` for the quaternion; with angles v itself."""
         if self.angles is not None:
             return v
         turn = self._ball.motion(algebra, q[3:], v[3:])
@@ -107,7 +113,10 @@ class Free(Joint):
         return (*linear, *self._ball.rates(algebra, q[3:], v[3:]))
 
     def adjoint(self, v: tuple[Scalar, ...]) -> tuple[tuple[Scalar, ...], ...]:
-        """``[ω x]`` on both parts, and ``[u x]`` from the turn to the shift; nothing with angles."""
+        """The adjoint of SE(3) in head axes, in the order (u, ω); zero with angles.
+
+        ``[ω x]`` for both parts, and ``[u x]`` from the turn to the shift.
+        """
         if self.angles is not None:
             return super().adjoint(v)
         u, w = skew((v[0], v[1], v[2])), skew((v[3], v[4], v[5]))
@@ -115,19 +124,26 @@ class Free(Joint):
         return (*upper, *((0, 0, 0, *row) for row in w))
 
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
-        """Nothing."""
+        """Empty: it restricts nothing."""
         return ()
 
     def measured(
         self, algebra: Algebra, rotation: Matrix, displacement: Vector
     ) -> tuple[Scalar, ...]:
-        """The position and the angles; of a quaternion, whose sign is open, there is no formula."""
+        """The position (m) and the angles (rad).
+
+        Raises:
+            ModelError: it has a quaternion, whose sign a rotation leaves open.
+        """
         return (*displacement, *self._ball.measured(algebra, rotation, displacement))
 
     def duals(
         self, algebra: Algebra, rotation: Matrix, displacement: Vector
     ) -> tuple[tuple[Vector, Vector], ...]:
-        """Along and about head axes; with angles along tail axes, and about the axes of the angles."""
+        """Forces along and torques about head axes.
+
+        With angles, forces along tail axes and torques that do work along one angle only.
+        """
         if self.angles is None:
             return super().duals(algebra, rotation, displacement)
         along = tuple((ZERO, row) for row in rotation)

@@ -34,7 +34,8 @@ if TYPE_CHECKING:
 class Helical(Joint):
     """A screw: the head turns about `axis` by the angle q (rad) and advances along it by lead * q / 2 pi.
 
-    v = q̇ (rad/s); the effort is a torque about the axis.
+    v = q̇ (rad/s); the effort is a torque about the axis. Relative motion in aligned axes, with p = lead / 2
+    pi (m/rad): R = a turn about z by q, d = z p q, w = z v, u = z p v.
 
     Attributes:
         lead: advance in a full turn (m), positive for a right-handed screw; may be a parameter.
@@ -50,7 +51,7 @@ class Helical(Joint):
     slides = (2,)
 
     def __post_init__(self) -> None:
-        """Raises `ModelError` where there is no lead or it is not finite."""
+        """Refuse a screw without a lead, or with one that is not finite, with a `ModelError`."""
         who = f'joint "{self.name}"'
         if self.lead is None:
             raise ModelError(who, "has no lead; give lead=..., the advance in a full turn (m)")
@@ -62,23 +63,23 @@ class Helical(Joint):
         return self.lead * (1 / math.tau)
 
     def positions(self) -> tuple[Quantity, ...]:
-        """The angle."""
+        """The angle, called after the joint (rad)."""
         return (Quantity(self.name, "rad", f"angle of helical joint {self.name}"),)
 
     def velocities(self) -> tuple[Quantity, ...]:
-        """Its rate."""
+        """The rate of the angle (rad/s)."""
         return (Quantity(self.name, "rad/s", f"rate of helical joint {self.name}"),)
 
     def resolved(self, resolve: Callable[[Any], Scalar]) -> Self:
-        """The lead as a scalar."""
+        """The same screw with its lead as a scalar (m)."""
         return self._with(lead=resolve(self.lead))
 
     def alignment(self) -> Matrix:
-        """Z onto the axis."""
+        """The smallest rotation that takes z to the axis."""
         return z_onto(self.axis)
 
     def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
-        """A turn about z with its share of a shift along z."""
+        """A turn about z by q, and lead / 2 pi times that as a shift along z. There is no bias."""
         turn = Turn(2, algebra.cos(q[0]), algebra.sin(q[0]))
         shift = (0, 0, self._advance * q[0])
         return Motion(Rotation((turn,)), shift, ((0, 0, 1),), ((0, 0, self._advance),))
@@ -92,17 +93,17 @@ class Helical(Joint):
         return round_apart(head)
 
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
-        """No motion across the axis, and along it only as the thread has it."""
+        """Forces and torques along and about x and y, and a force along z with the torque of the thread."""
         return (*NO_SHIFT_ACROSS_Z, *NO_TURN_ACROSS_Z, Thread(self._advance))
 
     def measured(
         self, algebra: Algebra, rotation: Matrix, displacement: Vector
     ) -> tuple[Scalar, ...]:
-        """The angle about z."""
+        """The angle about z (rad), between -pi and pi; the advance of further turns is not looked at."""
         return (angle_about_z(algebra, rotation),)
 
     def duals(
         self, algebra: Algebra, rotation: Matrix, displacement: Vector
     ) -> tuple[tuple[Vector, Vector], ...]:
-        """A torque about z."""
+        """A torque about z alone: the angle is measured by the turn, not by the advance."""
         return (((0, 0, 1), ZERO),)

@@ -14,7 +14,17 @@ if TYPE_CHECKING:
 
 
 def moved(near: Placement, joint: Joint, value: Any, snap: float) -> Placement:
-    """The head frame of a one-freedom joint at a fixed value of its coordinate."""
+    """The place of the head frame of a joint that is held at a value of its coordinate.
+
+    Args:
+        near: the tail frame, in the body that the head becomes part of.
+        joint: a joint with one freedom.
+        value: its coordinate, a number (rad or m).
+        snap: entries of rotations closer than this to 0, 1 and the like become exactly that.
+
+    Returns:
+        The head frame in the same body.
+    """
     alignment = Placement(ZERO, joint.alignment())
     motion = joint.motion(Constants(), (value,), (0,))
     turn = Placement(motion.displacement, snapped(motion.rotation.matrix(), snap))

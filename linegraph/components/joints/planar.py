@@ -31,6 +31,11 @@ class Planar(Joint):
     the head's origin in the *head's* x and y (m/s) and angular rate (rad/s). With another normal than z,
     x and y are the tail's x and y after the smallest rotation that takes z to the normal.
 
+    Relative motion in aligned axes: R = a turn about z by the angle, d = (x, y, 0), w = z wz, u = (vx, vy,
+    0). Velocities in head axes keep M constant for a body that moves alone; in return q̇ = N(q) v turns them
+    into tail axes. The efforts are forces along the head's x and y on the head (N) and a torque about z (N
+    m).
+
     Example:
         >>> [c.name for c in Planar("table", ("ground", "puck")).velocities()]
         ['table_vx', 'table_vy', 'table_wz']
@@ -41,7 +46,7 @@ class Planar(Joint):
     slides = (2,)
 
     def positions(self) -> tuple[Quantity, ...]:
-        """x, y and the angle."""
+        """Position x and y in the tail frame (m), then the angle (rad)."""
         where = f"of planar joint {self.name}, in the tail frame"
         return (
             Quantity(f"{self.name}_x", "m", f"position x {where}"),
@@ -50,7 +55,7 @@ class Planar(Joint):
         )
 
     def velocities(self) -> tuple[Quantity, ...]:
-        """The velocity in head axes and the angular rate."""
+        """Velocity of the head's origin along the head's x and y (m/s), then the angular rate (rad/s)."""
         where = f"of planar joint {self.name}, in head axes"
         return (
             Quantity(f"{self.name}_vx", "m/s", f"velocity x {where}"),
@@ -59,11 +64,11 @@ class Planar(Joint):
         )
 
     def alignment(self) -> Matrix:
-        """Z onto the normal."""
+        """The smallest rotation that takes z to the normal."""
         return z_onto(self.axis)
 
     def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
-        """A shift in x and y, then a turn about z."""
+        """A shift in x and y, then a turn about z. The columns are constant in head axes: no bias."""
         turn = Turn(2, algebra.cos(q[2]), algebra.sin(q[2]))
         linear = ((1, 0, 0), (0, 1, 0), ZERO)
         return Motion(Rotation((turn,)), (q[0], q[1], 0), (ZERO, ZERO, (0, 0, 1)), linear)
@@ -71,12 +76,12 @@ class Planar(Joint):
     def rates(
         self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]
     ) -> tuple[Scalar, ...]:
-        """Turn the velocity from head to tail axes."""
+        """``ẋ = c vx - s vy``, ``ẏ = s vx + c vy``, and the angular rate; c, s of the angle."""
         c, s = algebra.cos(q[2]), algebra.sin(q[2])
         return (c * v[0] - s * v[1], s * v[0] + c * v[1], v[2])
 
     def adjoint(self, v: tuple[Scalar, ...]) -> tuple[tuple[Scalar, ...], ...]:
-        """That of motions in the plane."""
+        """The adjoint of motions in the plane, SE(2), in the order (vx, vy, wz)."""
         x, y, turn = v
         return ((0, -turn, y), (turn, 0, -x), (0, 0, 0))
 
@@ -85,11 +90,11 @@ class Planar(Joint):
         return round_apart(head)
 
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
-        """No shift along the normal, no turn but about it."""
+        """A force along z, and torques about x and y: no shift along the normal, no turn but about it."""
         return (NO_SHIFT[2], *NO_TURN_ACROSS_Z)
 
     def measured(
         self, algebra: Algebra, rotation: Matrix, displacement: Vector
     ) -> tuple[Scalar, ...]:
-        """The place in the plane and the angle about z."""
+        """The place in the plane (m) and the angle about z (rad), between -pi and pi."""
         return (displacement[0], displacement[1], angle_about_z(algebra, rotation))

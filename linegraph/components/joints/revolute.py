@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 class Revolute(Joint):
     """A hinge: the head turns about `axis` by the angle q (rad), right-handed; v = q̇ (rad/s).
 
+    Relative motion in aligned axes: R = a turn about z by q, d = 0, w = z v, u = 0. The effort is the torque
+    about the axis on the head (N m).
+
     Example:
         >>> Revolute("elbow", ("arm.tip", "forearm"), axis=(0, 1, 0)).velocities()[0].unit
         'rad/s'
@@ -38,27 +41,27 @@ class Revolute(Joint):
     slides = (2,)
 
     def positions(self) -> tuple[Quantity, ...]:
-        """The angle."""
+        """The angle, called after the joint (rad)."""
         return (Quantity(self.name, "rad", f"angle of revolute joint {self.name}"),)
 
     def velocities(self) -> tuple[Quantity, ...]:
-        """Its rate."""
+        """The rate of the angle (rad/s)."""
         return (Quantity(self.name, "rad/s", f"rate of revolute joint {self.name}"),)
 
     def alignment(self) -> Matrix:
-        """Z onto the axis."""
+        """The smallest rotation that takes z to the axis."""
         return z_onto(self.axis)
 
     def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
-        """A turn about z."""
+        """A turn about z by q, without displacement. The column z is constant, so there is no bias."""
         turn = Turn(2, algebra.cos(q[0]), algebra.sin(q[0]))
         return Motion(Rotation((turn,)), ZERO, ((0, 0, 1),), (ZERO,))
 
     def regroup(self, head: Moments) -> tuple[Moments, Moments]:
-        """Hand over what could as well lie on the axis.
+        """Hand over the moments of mass that could as well be on the axis.
 
-        The mass as a point on the axis, its first moment along it and its spread along it look the same
-        from the tail body at every angle (Khalil's base parameters).
+        The mass as a point on the axis, its first moment along the axis and its spread along it look the same
+        from the tail body at every angle [Gautier and Khalil 1990].
         """
         x, y, z = head.first
         *others, zz = head.second
@@ -66,11 +69,11 @@ class Revolute(Joint):
         return kept, Moments(head.mass, (0, 0, z), (0, 0, 0, 0, 0, zz))
 
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
-        """No shift, no turn but about the axis."""
+        """Three forces, and torques about x and y: no shift, no turn but about z."""
         return (*NO_SHIFT, *NO_TURN_ACROSS_Z)
 
     def measured(
         self, algebra: Algebra, rotation: Matrix, displacement: Vector
     ) -> tuple[Scalar, ...]:
-        """The angle about z."""
+        """The angle about z (rad), between -pi and pi."""
         return (angle_about_z(algebra, rotation),)

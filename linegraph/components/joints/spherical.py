@@ -33,6 +33,9 @@ class Spherical(Joint):
     axes. Or, with `angles`, q = three angles of turns each about an axis left by those before it (rad),
     v = their rates (rad/s), effort = torques about these axes.
 
+    With the quaternion, R = R(q), d = 0, w = v, u = 0, and ``q̇ = 1/2 q (v, 0)``; q and -q are the same
+    orientation. With angles, R is the product of the three turns [Diebel 2006].
+
     Angles have a singular orientation where the first and the third axis are in line, and M is singular
     there: three different axes at a second angle of 90 degrees, the first repeated as the third at 0 and
     180 degrees, hence at q = 0. Choose a sequence whose singular orientation the joint does not reach, or
@@ -53,7 +56,7 @@ class Spherical(Joint):
     freedoms = 3
 
     def __post_init__(self) -> None:
-        """Raises `ModelError` where the sequence of axes is unknown."""
+        """Refuse an unknown sequence of axes with a `ModelError` that lists the known ones."""
         if self.angles is not None and self.angles not in SEQUENCES:
             known = ", ".join(SEQUENCES)
             problem = f"there are no angles {self.angles!r}; sequences of turns are {known}"
@@ -61,11 +64,11 @@ class Spherical(Joint):
 
     @property
     def singular(self) -> bool:
-        """With angles, where the first and the third axis are in line."""
+        """True with angles: where the first and the third axis are in line."""
         return self.angles is not None
 
     def positions(self) -> tuple[Quantity, ...]:
-        """The quaternion, or the angles."""
+        """The quaternion (x, y, z, w), or the three angles (rad)."""
         if self.angles is None:
             return tuple(
                 Quantity(f"{self.name}_q{c}", "1", f"quaternion {c} of {self.name}") for c in "xyzw"
@@ -76,7 +79,7 @@ class Spherical(Joint):
         )
 
     def velocities(self) -> tuple[Quantity, ...]:
-        """The angular velocity in head axes, or the rates of the angles."""
+        """The angular velocity in head axes, or the rates of the angles (rad/s)."""
         if self.angles is None:
             what = f"of {self.name}, in head axes"
             return tuple(
@@ -89,11 +92,11 @@ class Spherical(Joint):
         )
 
     def rest(self) -> tuple[float, ...]:
-        """Identity quaternion, or no angles."""
+        """The quaternion (0, 0, 0, 1) of no turn, or three angles of 0."""
         return (0.0, 0.0, 0.0, 1.0) if self.angles is None else (0.0, 0.0, 0.0)
 
     def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
-        """Turn by the quaternion, whose velocities are the components themselves, or by the angles."""
+        """The turn of the quaternion, with unit columns and no bias, or the product of the three turns."""
         if self.angles is None:
             x, y, z, w = q
             rotation = Rotation((Full(from_quaternion(x, y, z, w)),))
@@ -101,13 +104,16 @@ class Spherical(Joint):
         return turns(algebra, [IDENTITY_MATRIX["xyz".index(c)] for c in self.angles], q, v)
 
     def sequence(self) -> tuple[tuple[Joint, Rotation], ...]:
-        """Three hinges, where it has angles."""
+        """Three hinges about coordinate axes, where it has angles; none for the quaternion."""
         return hinges(self, [IDENTITY_MATRIX["xyz".index(c)] for c in self.angles or ""])
 
     def rates(
         self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]
     ) -> tuple[Scalar, ...]:
-        """Quaternion rate ``q̇ = 1/2 q (ω, 0)``; the angles' rates as they are."""
+        """Quaternion rate ``q̇ = 1/2 q (ω, 0)``, ω in head axes; with angles v itself.
+
+        The product is Hamilton's, with w last. The rate is normal to q, so that q keeps its length.
+        """
         if self.angles is not None:
             return v
         x, y, z, w = q
@@ -120,7 +126,7 @@ class Spherical(Joint):
         )
 
     def adjoint(self, v: tuple[Scalar, ...]) -> tuple[tuple[Scalar, ...], ...]:
-        """``[ω x]``; nothing with angles."""
+        """``[ω x]``, the adjoint of SO(3) in head axes; zero with angles."""
         return super().adjoint(v) if self.angles is not None else skew((v[0], v[1], v[2]))
 
     def regroup(self, head: Moments) -> tuple[Moments, Moments]:
@@ -128,13 +134,17 @@ class Spherical(Joint):
         return point_apart(head)
 
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
-        """No shift."""
+        """Three forces: no shift of the common origin."""
         return NO_SHIFT
 
     def measured(
         self, algebra: Algebra, rotation: Matrix, displacement: Vector
     ) -> tuple[Scalar, ...]:
-        """The angles; of a quaternion, whose sign is open, there is no formula."""
+        """The angles (rad), as `angles_of` gives them.
+
+        Raises:
+            ModelError: it has a quaternion, whose sign a rotation leaves open.
+        """
         if self.angles is None:
             return super().measured(algebra, rotation, displacement)
         return angles_of(algebra, self.angles, rotation)
@@ -142,7 +152,10 @@ class Spherical(Joint):
     def duals(
         self, algebra: Algebra, rotation: Matrix, displacement: Vector
     ) -> tuple[tuple[Vector, Vector], ...]:
-        """Torques about head axes, or about the axes of the angles."""
+        """Torques about head axes; with angles those that do work along one angle only.
+
+        At the singular orientation of the angles no such torques exist.
+        """
         if self.angles is None:
             return super().duals(algebra, rotation, displacement)
         q = self.measured(algebra, rotation, displacement)

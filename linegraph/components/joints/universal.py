@@ -36,7 +36,9 @@ class Universal(Joint):
     """A cardan (Hooke) joint: the head turns about an axis that itself turns about one of the tail.
 
     q = (angle1, angle2) (rad), v their rates (rad/s). The first axis is fixed in the tail frame, the second
-    in the head frame; both are given in the frames as they stand at q = 0, where these coincide.
+    in the head frame; both are given in the frames at q = 0, where these coincide. With a1, a2
+    the axes, R = turn(a1, q1) turn(a2, q2), d = 0, ``w = turn(a2, q2)^T a1 v1 + a2 v2`` in head axes. The
+    efforts are torques about the two axes (N m).
 
     Attributes:
         axes: the two directions; they need not be normal to each other but must not be parallel.
@@ -52,7 +54,7 @@ class Universal(Joint):
     freedoms = 2
 
     def __post_init__(self) -> None:
-        """Raises `ModelError` where there are not two axes, or one has no length, or they are parallel."""
+        """Refuse axes that are not two, have no length, or are parallel, with a `ModelError`."""
         who = f'joint "{self.name}"'
         if len(self.axes) != 2:
             raise ModelError(who, f"two axes are needed, got {len(self.axes)}")
@@ -66,21 +68,21 @@ class Universal(Joint):
         return first, second
 
     def positions(self) -> tuple[Quantity, ...]:
-        """The angles."""
+        """The angle about each axis (rad)."""
         return tuple(
             Quantity(f"{self.name}_angle{k}", "rad", f"angle {k} of universal joint {self.name}")
             for k in (1, 2)
         )
 
     def velocities(self) -> tuple[Quantity, ...]:
-        """Their rates."""
+        """The rate of each angle (rad/s)."""
         return tuple(
             Quantity(f"{self.name}_angle{k}", "rad/s", f"rate {k} of universal joint {self.name}")
             for k in (1, 2)
         )
 
     def resolved(self, resolve: Callable[[Any], Scalar]) -> Self:
-        """The axes as scalars."""
+        """The same joint with its axes as scalars."""
         return self._with(_directions=tuple(tuple(map(resolve, a)) for a in self._directions))
 
     def alignment(self) -> Matrix:
@@ -88,24 +90,27 @@ class Universal(Joint):
         return common_axes(self._directions)
 
     def motion(self, algebra: Algebra, q: tuple[Scalar, ...], v: tuple[Scalar, ...]) -> Motion:
-        """A turn about the first axis, then one about the second."""
+        """A turn about the first axis, then one about the second.
+
+        The first column turns relative to the head with the second angle, which gives the bias ``w1 x w2``.
+        """
         axes = self.alignment()
         return turns(algebra, [seen(axis, axes) for axis in self._directions], q, v)
 
     def sequence(self) -> tuple[tuple[Joint, Rotation], ...]:
-        """Two hinges."""
+        """Two hinges, about the first and the second axis."""
         axes = self.alignment()
         return hinges(self, [seen(axis, axes) for axis in self._directions])
 
     def regroup(self, head: Moments) -> tuple[Moments, Moments]:
         """Hand over the mass as a point: the joint's centre belongs to both bodies.
 
-        Nothing more: the second axis, about which a hinge would, moves against the tail.
+        Nothing more: the second axis, about which a hinge would, moves relative to the tail.
         """
         return point_apart(head)
 
     def restricted(self, algebra: Algebra) -> tuple[Restriction, ...]:
-        """No shift, no turn about the common normal of the axes."""
+        """Three forces, and a torque about the common normal: the axes keep the angle between them."""
         axes = self.alignment()
         first, second = (seen(axis, axes) for axis in self._directions)
         normal = cross(first, second)
@@ -115,7 +120,11 @@ class Universal(Joint):
     def measured(
         self, algebra: Algebra, rotation: Matrix, displacement: Vector
     ) -> tuple[Scalar, ...]:
-        """The angles: of the second axis about the first in the tail, of the first about it in the head."""
+        """The angles (rad), between -pi and pi.
+
+        The first is that of the second axis about the first, as the tail sees it; the second that of the
+        first axis about the second, as the head sees it, reversed.
+        """
         axes = self.alignment()
         first, second = (seen(axis, axes) for axis in self._directions)
         moved, back = times(rotation, second), times(transpose(rotation), first)
@@ -125,7 +134,7 @@ class Universal(Joint):
     def duals(
         self, algebra: Algebra, rotation: Matrix, displacement: Vector
     ) -> tuple[tuple[Vector, Vector], ...]:
-        """Torques that do work along one axis only."""
+        """Torques that do work along one angle only: the reciprocal basis of the two axes in their plane."""
         q = self.measured(algebra, rotation, displacement)
         columns = self.motion(algebra, q, (0, 0)).angular
         return tuple((s, ZERO) for s in reciprocal(columns))

@@ -1,6 +1,8 @@
-"""The register of components of scalar networks: one file each, one line in `Words`.
+"""The register of components of scalar networks and of transducers: one line for each in `Words`.
 
-A component's file is imported when it is first used: most models have few of them, and many have none.
+Components are in the file of their domain, couplings in `couplings`, and transducers have a file each in
+`linegraph.components.transducers`. A file is imported when a type in it is first used: many models have no
+network at all.
 """
 
 from __future__ import annotations
@@ -14,73 +16,77 @@ from linegraph.components.scalar.words import connects
 
 
 class Words(Networks):
-    """What the builder calls them: ``model.resistor("R1", between=("a", "b"), resistance=100.0)``."""
+    """The builder's methods: ``model.resistor("R1", between=("a", "b"), resistance=100.0)``.
 
-    resistor = connects("resistor", "Resistor")
-    conductance = connects("conductance", "Conductance")
-    capacitor = connects("capacitor", "Capacitor")
-    inductor = connects("inductor", "Inductor")
-    coupled_inductors = connects("coupled_inductors", "CoupledInductors")
-    diode = connects("diode", "Diode")
-    opamp = connects("opamp", "OpAmp")
-    transformer = connects("transformer", "Transformer")
-    gyrator = connects("gyrator", "Gyrator")
-    voltage_source = connects("voltage_source", "VoltageSource")
-    current_source = connects("current_source", "CurrentSource")
-    mass = connects("mass", "Mass")
-    translational_spring = connects("translational_spring", "TranslationalSpring")
-    translational_damper = connects("translational_damper", "TranslationalDamper")
-    translational_friction = connects("translational_friction", "TranslationalFriction")
-    lever = connects("lever", "Lever")
-    force_source = connects("force_source", "ForceSource")
-    velocity_source = connects("velocity_source", "VelocitySource")
-    inertia = connects("inertia", "Inertia")
-    rotational_spring = connects("rotational_spring", "RotationalSpring")
-    rotational_damper = connects("rotational_damper", "RotationalDamper")
-    rotational_friction = connects("rotational_friction", "RotationalFriction")
-    gear = connects("gear", "Gear")
-    belt = connects("belt", "Belt")
-    rack = connects("rack", "Rack")
-    screw = connects("screw", "Screw")
-    torque_source = connects("torque_source", "TorqueSource")
-    angular_velocity_source = connects("angular_velocity_source", "AngularVelocitySource")
-    tank = connects("tank", "Tank")
-    accumulator = connects("accumulator", "Accumulator")
-    inertance = connects("inertance", "Inertance")
-    pipe = connects("pipe", "Pipe")
-    orifice = connects("orifice", "Orifice")
-    valve = connects("valve", "Valve")
-    pressure_source = connects("pressure_source", "PressureSource")
-    flow_source = connects("flow_source", "FlowSource")
-    heat_capacity = connects("heat_capacity", "HeatCapacity")
-    conduction = connects("conduction", "Conduction")
-    convection = connects("convection", "Convection")
-    radiation = connects("radiation", "Radiation")
-    losses = connects("losses", "Losses")
-    temperature_source = connects("temperature_source", "TemperatureSource")
-    heat_source = connects("heat_source", "HeatSource")
-    reluctance = connects("reluctance", "Reluctance")
-    winding = connects("winding", "Winding")
-    mmf_source = connects("mmf_source", "MmfSource")
-    flux_source = connects("flux_source", "FluxSource")
-    element = connects("element", "AnyElement")
-    store = connects("any_store", "AnyStore")
-    dc_motor = connects("dc_motor", "DcMotor")
-    moving_coil = connects("moving_coil", "MovingCoil")
-    solenoid = connects("solenoid", "Solenoid")
-    reluctance_machine = connects("solenoid", "ReluctanceMachine")
-    variable_capacitor = connects("variable_capacitor", "VariableCapacitor")
-    piezo = connects("piezo", "Piezo")
-    synchronous_machine = connects("synchronous_machine", "SynchronousMachine")
-    cylinder = connects("cylinder", "Cylinder")
-    pump = connects("pump", "Pump")
-    hydraulic_motor = connects("pump", "HydraulicMotor")
-    translational_interface = connects("interface", "TranslationalInterface")
-    rotational_interface = connects("interface", "RotationalInterface")
+    Each line gives a type's name in model files and for the builder, its file below `linegraph.components`,
+    and its class. The schema has the same order.
+    """
+
+    resistor = connects("scalar.electrical", "Resistor")
+    conductance = connects("scalar.electrical", "Conductance")
+    capacitor = connects("scalar.electrical", "Capacitor")
+    inductor = connects("scalar.electrical", "Inductor")
+    coupled_inductors = connects("scalar.electrical", "CoupledInductors")
+    diode = connects("scalar.electrical", "Diode")
+    opamp = connects("scalar.electrical", "OpAmp")
+    transformer = connects("scalar.couplings", "Transformer")
+    gyrator = connects("scalar.couplings", "Gyrator")
+    voltage_source = connects("scalar.electrical", "VoltageSource")
+    current_source = connects("scalar.electrical", "CurrentSource")
+    mass = connects("scalar.translational", "Mass")
+    translational_spring = connects("scalar.translational", "TranslationalSpring")
+    translational_damper = connects("scalar.translational", "TranslationalDamper")
+    translational_friction = connects("scalar.translational", "TranslationalFriction")
+    lever = connects("scalar.couplings", "Lever")
+    force_source = connects("scalar.translational", "ForceSource")
+    velocity_source = connects("scalar.translational", "VelocitySource")
+    inertia = connects("scalar.rotational", "Inertia")
+    rotational_spring = connects("scalar.rotational", "RotationalSpring")
+    rotational_damper = connects("scalar.rotational", "RotationalDamper")
+    rotational_friction = connects("scalar.rotational", "RotationalFriction")
+    gear = connects("scalar.couplings", "Gear")
+    belt = connects("scalar.couplings", "Belt")
+    rack = connects("scalar.couplings", "Rack")
+    screw = connects("scalar.couplings", "Screw")
+    torque_source = connects("scalar.rotational", "TorqueSource")
+    angular_velocity_source = connects("scalar.rotational", "AngularVelocitySource")
+    tank = connects("scalar.hydraulic", "Tank")
+    accumulator = connects("scalar.hydraulic", "Accumulator")
+    inertance = connects("scalar.hydraulic", "Inertance")
+    pipe = connects("scalar.hydraulic", "Pipe")
+    orifice = connects("scalar.hydraulic", "Orifice")
+    valve = connects("scalar.hydraulic", "Valve")
+    pressure_source = connects("scalar.hydraulic", "PressureSource")
+    flow_source = connects("scalar.hydraulic", "FlowSource")
+    heat_capacity = connects("scalar.thermal", "HeatCapacity")
+    conduction = connects("scalar.thermal", "Conduction")
+    convection = connects("scalar.thermal", "Convection")
+    radiation = connects("scalar.thermal", "Radiation")
+    losses = connects("scalar.thermal", "Losses")
+    temperature_source = connects("scalar.thermal", "TemperatureSource")
+    heat_source = connects("scalar.thermal", "HeatSource")
+    reluctance = connects("scalar.magnetic", "Reluctance")
+    winding = connects("scalar.couplings", "Winding")
+    mmf_source = connects("scalar.magnetic", "MmfSource")
+    flux_source = connects("scalar.magnetic", "FluxSource")
+    element = connects("scalar.element", "AnyElement")
+    store = connects("scalar.any_store", "AnyStore")
+    dc_motor = connects("transducers.dc_motor", "DcMotor")
+    moving_coil = connects("transducers.moving_coil", "MovingCoil")
+    solenoid = connects("transducers.solenoid", "Solenoid")
+    reluctance_machine = connects("transducers.solenoid", "ReluctanceMachine")
+    variable_capacitor = connects("transducers.variable_capacitor", "VariableCapacitor")
+    piezo = connects("transducers.piezo", "Piezo")
+    synchronous_machine = connects("transducers.synchronous_machine", "SynchronousMachine")
+    cylinder = connects("transducers.cylinder", "Cylinder")
+    pump = connects("transducers.pump", "Pump")
+    hydraulic_motor = connects("transducers.pump", "HydraulicMotor")
+    translational_interface = connects("transducers.interface", "TranslationalInterface")
+    rotational_interface = connects("transducers.interface", "RotationalInterface")
 
 
 class _Register(Mapping[str, type[Component]]):
-    """The types by their names, which are the builder's words."""
+    """The types by name; the file of a type is imported when it is looked up."""
 
     def __getitem__(self, word: str) -> type[Component]:
         method: Any = vars(Words)[word]
@@ -96,6 +102,6 @@ class _Register(Mapping[str, type[Component]]):
 
 
 COMPONENTS = _Register()
-"""The types by their names."""
+"""The types of all components by name, in the order of `Words`."""
 
 __all__ = ["COMPONENTS", "Component", "Words"]

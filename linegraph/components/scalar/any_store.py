@@ -1,4 +1,4 @@
-"""Any store: a charge or a co-energy of what it keeps, in any subspace."""
+"""Any store: a charge or a co-energy as a function of the variable kept, in any subspace."""
 
 from __future__ import annotations
 
@@ -16,6 +16,10 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class AnyStore(Component):
     """A store in any subspace: ``Y = d/dt Q(X)`` if it keeps X, ``X = d/dt Q(Y)`` if it keeps Y.
+
+    X is the across variable of the tail less that of the head, Y flows from tail to head, in the units of the
+    subspace. With k the variable kept, ``Q = constant k``, or as given, or ``∂W'/∂k``; it stores ``Q k -
+    W'``.
 
     Attributes:
         between: its vertices (tail, head).
@@ -41,26 +45,30 @@ class AnyStore(Component):
     needs = (("constant", "charge", "coenergy"),)
 
     def ports(self) -> tuple[Port, ...]:
-        """Its one edge."""
+        """One edge in the chosen subspace."""
         return (Port("", self.domain, self.between),)
 
     def kept(self) -> tuple[str, ...]:
-        """As chosen."""
+        """Its across or its through variable, as chosen."""
         return (self.keeps,)
 
     def kept_coenergy(self, at: Terminals) -> Scalar:
-        """Half the constant times the square of what is kept, or as given; not known of a charge."""
+        """``constant k² / 2`` (J), or as given; 0 of a charge, which the network integrates."""
         k = self._kept(at)
         if self.coenergy is not None:
             return at.value(self.coenergy, k=k)
         return 0 if self.constant is None else at.value(self.constant) * (k * k / 2)
 
     def charges(self, at: Terminals) -> tuple[Scalar, ...] | None:
-        """The charge where it is given as such."""
+        """The charge where it is given as such; else None, and it follows from the co-energy."""
         return None if self.charge is None else (at.value(self.charge, k=self._kept(at)),)
 
     def require_fields(self) -> None:
-        """Refuse a variable that is neither."""
+        """Refuse also a variable to keep that is neither.
+
+        Raises:
+            ModelError: a field is missing or one too many, or `keeps` is neither.
+        """
         super().require_fields()
         if self.keeps not in (ACROSS, THROUGH):
             problem = f'keeps "{ACROSS}" or "{THROUGH}", not "{self.keeps}"'

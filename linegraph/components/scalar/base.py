@@ -1,8 +1,9 @@
-"""What every component of a scalar network answers; each type is one file beside this one.
+"""The base of all components of scalar networks.
 
 A *component* is a terminal graph in scalar subspaces: one edge for each of its ports. The across variable X
 of an edge is the potential of its tail less that of its head, the through variable Y flows through the
-component from tail to head, so that X Y is the power it takes in.
+component from tail to head, so that X Y is the power it takes in. Across and through variables, and stores
+of the A-type and the T-type, are those of linear graphs [Rowell and Wormley 1997].
 
     between = (tail, head)   the vertices of an edge: names, in each domain its own, "ground" the datum
     joint = name             where a transducer acts in 3-D mechanics: X is the rate of the coordinate
@@ -11,8 +12,8 @@ component from tail to head, so that X Y is the power it takes in.
 
 A port is *static*, with a law between across and through variables, or it *stores*: it keeps one of its
 variables, and the other is the rate of its charge, ``∂W'/∂kept`` of the component's co-energy W'. With a
-displacement x in the co-energy the mechanical port pushes with ``∂W'/∂x``. All types answer the same
-questions in the same order:
+displacement x in the co-energy the mechanical port pushes with ``∂W'/∂x``. All types have the same methods
+in the same order:
 
     ports   kept   states   laws   kept_coenergy   charges   rates   own_energy   dissipation
 """
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     from linegraph.algebra.scalar import Scalar
 
 ACROSS, THROUGH, STATIC = "across", "through", ""
-"""What a port keeps."""
+"""The variable that a port keeps; a static port keeps none."""
 
 Pair = tuple[str, str]
 Own = Mapping[str, tuple[str, ...]]
@@ -57,48 +58,80 @@ class Port:
     points: Pair | None = None
 
     def edge(self, component: str) -> str:
-        """The name of its edge."""
+        """The name of its edge: ``component.label``, or the component's where it is the only one.
+
+        Args:
+            component: the component's name.
+        """
         return f"{component}.{self.label}" if self.label else component
 
     @property
     def spatial(self) -> bool:
-        """Whether it is in 3-D mechanics."""
+        """Whether it is in 3-D mechanics: at a joint or between two points."""
         return self.between is None
 
 
 class Terminals(Protocol):
-    """What a component's laws are written in."""
+    """The variables of a component and the functions that its laws are written in.
+
+    X, Y and the states belong to the component alone; there is one X and one Y for each of its ports, in
+    their order.
+    """
 
     @property
     def X(self) -> Sequence[Scalar]:
-        """The across variable of each port."""
+        """The across variable of each port, the tail's potential less the head's."""
 
     @property
     def Y(self) -> Sequence[Scalar]:
-        """The through variable of each port."""
+        """The through variable of each port, from tail to head."""
 
     @property
     def x(self) -> Scalar:
-        """The displacement of the mechanical port: coordinate, distance, or the integral of X."""
+        """The displacement of the mechanical port (m or rad): coordinate, distance, or the integral of X."""
 
     @property
     def states(self) -> Mapping[str, Scalar]:
-        """The component's own states."""
+        """The component's own states, by the names in `Component.states`."""
 
     def value(self, given: Any, **own: Scalar) -> Scalar:
-        """A model value, which may name anything that a law may, and `own` names."""
+        """The scalar of a model value.
+
+        Args:
+            given: a number, a parameter, or an expression of anything that a law may name.
+            own: scalars of further names that the expression may use, such as x for the displacement.
+        """
 
     def function(self, name: str, *x: Scalar) -> Scalar:
-        """Any function of `functions.ARITY`."""
+        """The value of an elementary function.
+
+        Args:
+            name: one of `linegraph.ir.functions.ARITY`.
+            x: its arguments.
+        """
 
     def potential(self, domain: str, vertex: str) -> Scalar:
-        """The across variable from a vertex to ground."""
+        """The across variable from a vertex to ground.
+
+        Args:
+            domain: the subspace.
+            vertex: a vertex in it.
+        """
 
     def derivative(self, of: Scalar, by: Scalar) -> Scalar:
-        """The partial derivative by a symbol."""
+        """The partial derivative of an expression.
+
+        Args:
+            of: the expression.
+            by: the symbol with respect to which it is differentiated: a state, or the displacement.
+        """
 
     def taken(self, name: str) -> Scalar:
-        """The power that another component, or a force element, turns into heat."""
+        """The power that another component, or a force element, turns into heat (W).
+
+        Args:
+            name: of the component or element.
+        """
 
 
 @dataclass(frozen=True)
@@ -138,51 +171,80 @@ class Component:
     """Whether it delivers power from outside."""
 
     def ports(self) -> tuple[Port, ...]:
-        """Its edges."""
+        """Its edges, in the order of X and Y."""
         raise NotImplementedError
 
     def kept(self) -> tuple[str, ...]:
-        """What each port keeps."""
+        """For each port the variable it keeps, "across" or "through"; "" for a static port."""
         return (STATIC,) * len(self.ports())
 
     def states(self) -> tuple[OwnState, ...]:
-        """States beside those that ports keep."""
+        """Its states besides those that ports keep."""
         return ()
 
     def laws(self, at: Terminals) -> tuple[Scalar, ...]:
-        """Of a static port what is zero; of one that stores what its other variable has beside the rate.
+        """One expression for each port.
 
-        A mechanical port's law starts with +Y; the force of a displacement in the co-energy is added to it.
+        For a static port, a residual, which is zero. For a port that stores, the part of its other variable
+        that is not the rate of its charge. A mechanical port's law starts with +Y; the force of a
+        displacement in the co-energy is added to it.
+
+        Args:
+            at: the component's variables.
         """
         return (0,) * len(self.ports())
 
     def kept_coenergy(self, at: Terminals) -> Scalar:
-        """W' of the kept variables and the displacement (J)."""
+        """The co-energy W' of the kept variables and the displacement (J).
+
+        Args:
+            at: the component's variables.
+        """
         return 0
 
     def charges(self, at: Terminals) -> tuple[Scalar, ...] | None:
-        """Of each port that stores its charge, where this is not the derivative of a co-energy."""
+        """The charge of each port that stores, where it is given and not the derivative of a co-energy.
+
+        Args:
+            at: the component's variables.
+
+        Returns:
+            The charges, through variable times second or across variable times second; None where they follow
+            from `kept_coenergy`.
+        """
         return None
 
     def rates(self, at: Terminals) -> tuple[Scalar, ...]:
-        """The derivatives of its own states."""
+        """The derivatives of its own states with respect to time, in the order of `states`.
+
+        Args:
+            at: the component's variables.
+        """
         return ()
 
     def own_energy(self, at: Terminals) -> Scalar:
-        """Energy stored besides ``Σ kept charge - W'``, in states of its own (J)."""
+        """The energy stored in states of its own, besides ``Σ kept charge - W'`` (J).
+
+        Args:
+            at: the component's variables.
+        """
         return 0
 
     def dissipation(self, at: Terminals) -> Scalar:
-        """The power it turns into heat (W)."""
+        """The power it turns into heat (W), positive.
+
+        Args:
+            at: the component's variables.
+        """
         return 0
 
     @property
     def displaced(self) -> bool:
-        """Whether its laws use the displacement of its mechanical port."""
+        """Whether its laws use the displacement of its mechanical port, which then is a state."""
         return False
 
     def values(self) -> tuple[Any, ...]:
-        """The model values its laws depend on."""
+        """The model values its laws depend on; those left out are not among them."""
         own = (getattr(self, f.name) for f in fields(self) if f.name not in PLACES)
         return tuple(value for given in own for value in _flat(given) if value is not None)
 
@@ -190,7 +252,7 @@ class Component:
         """Refuse a component that lacks a field or has one too many.
 
         Raises:
-            ModelError: says which.
+            ModelError: names the field.
         """
         who = f'{self.kind} "{self.name}"'
         for group in self.needs:
@@ -237,7 +299,7 @@ class OnePort(Component):
     domain_name: ClassVar[str]
 
     def ports(self) -> tuple[Port, ...]:
-        """Its edge has its name."""
+        """Its edge, which has its name."""
         return (Port("", self.domain_name, self.between),)
 
 
@@ -246,7 +308,7 @@ class Dissipator(OnePort):
     """A component with one edge that turns all it takes in into heat."""
 
     def dissipation(self, at: Terminals) -> Scalar:
-        """X Y."""
+        """All power it takes in, ``X Y`` (W)."""
         return at.X[0] * at.Y[0]
 
 
@@ -265,7 +327,7 @@ class TwoPort(Component):
     domain_names: ClassVar[tuple[str, str]] = ("", "")
 
     def ports(self) -> tuple[Port, ...]:
-        """Both edges."""
+        """The edges "first" and "second", in that order."""
         first, second = self.domain_names
         return Port("first", first, self.between), Port("second", second, self.second)
 
@@ -273,6 +335,10 @@ class TwoPort(Component):
 @dataclass(frozen=True)
 class Transducer(Component):
     """A component with one edge in a network and one in mechanics, called after their subspaces.
+
+    X[0], Y[0] belong to the edge in the network, X[1], Y[1] to the one in mechanics. X[1] is the rate w of
+    the joint's coordinate, of the distance or of the shaft; Y[1] opposes it, so a transducer that drives with
+    a force F has the law ``Y[1] + F = 0``.
 
     Attributes:
         between: the vertices of its edge in the network.
@@ -291,11 +357,11 @@ class Transducer(Component):
     """Whether a shaft turns."""
 
     def ports(self) -> tuple[Port, ...]:
-        """The edge in the network, then that in mechanics."""
+        """The edge in the network, then the one in mechanics."""
         return Port(self.domain_name, self.domain_name, self.between), self.mechanical()
 
     def mechanical(self) -> Port:
-        """The edge in mechanics.
+        """The edge in mechanics, "mechanical".
 
         Raises:
             ModelError: it has no place, or several.

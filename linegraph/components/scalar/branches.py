@@ -1,4 +1,4 @@
-"""The terminal graph of scalar components: their edges, and what each keeps."""
+"""The terminal graph of scalar components: their edges, and the variable that each keeps."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class Branch:
     Attributes:
         name: of the edge.
         component: whose it is.
-        place: which of the component's ports.
+        place: which of the component's ports, from 0.
         port: the port.
-        kept: which of its variables it keeps.
+        kept: "across" or "through", whichever variable it keeps; "" for a static port.
     """
 
     name: str
@@ -36,13 +36,16 @@ class Branch:
 
     @property
     def between(self) -> Pair:
-        """Its vertices in a scalar subspace."""
+        """Its vertices (tail, head) in a scalar subspace."""
         assert self.port.between is not None
         return self.port.between
 
 
 def edges_of(components: Sequence[Component]) -> list[Branch]:
     """Every port of every component, in declared order.
+
+    Args:
+        components: those of a system.
 
     Raises:
         ModelError: a port begins where it ends.
@@ -59,7 +62,11 @@ def edges_of(components: Sequence[Component]) -> list[Branch]:
 
 
 def terminal_graph(branches: Sequence[Branch]) -> list[Edge]:
-    """The edges in scalar subspaces."""
+    """The terminal graph: the edges in scalar subspaces, without those in 3-D mechanics.
+
+    Args:
+        branches: those of a system.
+    """
     return [
         Edge(b.name, b.component.name, b.port.domain, *b.between)
         for b in branches
@@ -69,6 +76,9 @@ def terminal_graph(branches: Sequence[Branch]) -> list[Edge]:
 
 def projections(branches: Sequence[Branch]) -> tuple[Projection, ...]:
     """The graph of each scalar subspace.
+
+    Args:
+        branches: those of a system.
 
     Raises:
         ModelError: two edges have one name, or a part of a network is not connected with ground.
@@ -101,7 +111,7 @@ def _require_ground(projection: Projection, kinds: Mapping[str, str]) -> None:
 
 
 def _parts(projection: Projection) -> dict[str, str]:
-    """Of each vertex, one that stands for all it is connected with."""
+    """For each vertex, the one that represents all vertices it is connected with."""
     part = {vertex: vertex for vertex in projection.vertices}
 
     def find(vertex: str) -> str:
@@ -116,7 +126,11 @@ def _parts(projection: Projection) -> dict[str, str]:
 
 
 def dangling(projection: Projection) -> list[tuple[str, str]]:
-    """The vertices at which one edge alone ends, and that edge: nothing can flow through it."""
+    """The vertices at which one edge alone ends, and that edge: nothing can flow through it.
+
+    Args:
+        projection: the graph of one subspace; ground may end a single edge.
+    """
     touching: dict[str, list[str]] = {vertex: [] for vertex in projection.vertices}
     for edge in projection.edges:
         touching[edge.tail].append(edge.name)
@@ -125,5 +139,9 @@ def dangling(projection: Projection) -> list[tuple[str, str]]:
 
 
 def stores(branches: Sequence[Branch]) -> list[Branch]:
-    """The edges in scalar subspaces that keep a variable."""
+    """The edges in scalar subspaces that keep a variable.
+
+    Args:
+        branches: those of a system.
+    """
     return [b for b in branches if b.kept != STATIC and not b.port.spatial]

@@ -1,4 +1,4 @@
-"""What the builder does with components and domains, whatever their words."""
+"""The builder's part for components and domains, whatever their types."""
 
 from __future__ import annotations
 
@@ -25,13 +25,19 @@ class Networks:
 
     @property
     def _edges(self) -> Mapping[str, Any]:
-        """By their names all things that have edges, but bodies."""
+        """All things that have edges, but bodies, by their names."""
         raise NotImplementedError
 
     def domain(
         self, name: str, across: Mapping[str, str], through: Mapping[str, str], power: bool = True
     ) -> Domain:
         """Declare a power subspace; each variable is ``{"name": ..., "unit": ..., "letter": ...}``.
+
+        Args:
+            name: of the subspace, unlike all others.
+            across: the variable measured between the ends of an edge.
+            through: the variable that flows along an edge.
+            power: whether their product is a power (W); their units must agree with that.
 
         Raises:
             ModelError: the name is taken, or the units do not make a power.
@@ -47,8 +53,14 @@ class Networks:
     def add_component(self, component: Component) -> Component:
         """Add a component made elsewhere; ``model.resistor(...)`` and its siblings are friendlier.
 
+        Args:
+            component: its name must be unlike those of joints, force elements and other components.
+
+        Returns:
+            The component.
+
         Raises:
-            ModelError: the name is taken, or something is missing.
+            ModelError: the name is taken, something is missing, or a number is not finite.
         """
         who = f'{component.kind} "{component.name}"'
         taken = "the name is taken; joints, elements and components share names"

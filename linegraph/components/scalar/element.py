@@ -16,19 +16,26 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class LawEquation:
-    """An equation as it is written: ``left = right``."""
+    """An equation as it is written: ``left = right``.
+
+    Attributes:
+        left, right: the formulas on either side.
+    """
 
     left: Formula
     right: Formula
 
     @property
     def difference(self) -> Formula:
-        """What is zero."""
+        """The residual ``left - right``, which is zero."""
         return Formula("-", (self.left, self.right))
 
 
 def equation(text: str) -> LawEquation:
     """Read an equation.
+
+    Args:
+        text: two formulas with one sign of equality between them.
 
     Raises:
         ModelError: there is not one sign of equality, or a side cannot be read.
@@ -46,6 +53,10 @@ def equation(text: str) -> LawEquation:
 @dataclass(frozen=True)
 class AnyElement(Component):
     """An element with any law, in any subspace.
+
+    ``law`` is one equation of x, the across variable of the tail less that of the head, and y, the through
+    variable from tail to head, both in the units of the subspace. With a state, ``ds/dt = rate``. Without one
+    all that it takes in, ``x y``, counts as heat.
 
     Attributes:
         between: its vertices (tail, head).
@@ -66,32 +77,36 @@ class AnyElement(Component):
     required = ("law",)
 
     def ports(self) -> tuple[Port, ...]:
-        """Its one edge."""
+        """One edge in the chosen subspace."""
         return (Port("", self.domain, self.between),)
 
     def states(self) -> tuple[OwnState, ...]:
-        """s, where its rate is given."""
+        """The state s, where its rate is given."""
         return () if self.rate is None else (OwnState("s", "s", "", "state"),)
 
     def laws(self, at: Terminals) -> tuple[Scalar, ...]:
-        """The difference of both sides."""
+        """Residual of the equation: its left side less its right."""
         return (at.value(self._law.difference, **self._own(at)),)
 
     def rates(self, at: Terminals) -> tuple[Scalar, ...]:
-        """As given."""
+        """The value of `rate`, where it is given."""
         return () if self.rate is None else (at.value(self.rate, **self._own(at)),)
 
     def dissipation(self, at: Terminals) -> Scalar:
-        """All that it takes in, unless it has a state."""
+        """``x y`` (W); 0 if it has a state, because then it may store a part, which is not known."""
         return at.X[0] * at.Y[0] if self.rate is None else 0
 
     def values(self) -> tuple[Any, ...]:
-        """Both sides of the law."""
+        """Both sides of the law, and the rate if it is given."""
         law = self._law
         return tuple(x for x in (law.left, law.right, self.rate) if x is not None)
 
     def require_fields(self) -> None:
-        """Refuse a law that is no equation."""
+        """Refuse also a law that is no equation.
+
+        Raises:
+            ModelError: the law is missing or cannot be read.
+        """
         super().require_fields()
         try:
             _ = self._law

@@ -1,4 +1,4 @@
-"""What networks exert on 3-D mechanics: their edges there, as force elements."""
+"""The edges of transducers in 3-D mechanics, as force elements."""
 
 from __future__ import annotations
 
@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NetworkForce(Element):
-    """The edge of a transducer in 3-D mechanics: what it takes in, Y, holds its ends back.
+    """The edge of a transducer in 3-D mechanics: ``through = Y``, which holds its ends back.
+
+    Y is a variable of the network (N, or N m at a joint that turns); where the transducer drives, Y < 0.
 
     Example:
         >>> from linegraph.components.scalar import COMPONENTS
@@ -31,12 +33,16 @@ class NetworkForce(Element):
     kind = "edge"
 
     def through(self, algebra: Algebra, x: Scalar, v: Scalar, resolve: Resolve) -> Scalar:
-        """As the network says."""
+        """The through variable Y of the edge, which the network determines."""
         return resolve(Formula("variable", ("through", self.name, "")))
 
 
 def forces_of(components: Iterable[Component]) -> tuple[NetworkForce, ...]:
-    """The edges in 3-D mechanics of all components."""
+    """The edges in 3-D mechanics of all components.
+
+    Args:
+        components: those of a system, in declared order.
+    """
     return tuple(
         NetworkForce(port.edge(component.name), port.points, port.joint)
         for component in components

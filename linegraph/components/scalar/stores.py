@@ -1,4 +1,4 @@
-"""What stores with one edge have in common: the charge of a kept variable."""
+"""Stores with one edge: a kept variable, and the rate of its charge."""
 
 from __future__ import annotations
 
@@ -17,26 +17,31 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Store(OnePort):
-    """A store by a constant, by its charge as a function of what it keeps, or by its co-energy.
+    """A store by a constant, by its charge as a function of the variable kept, or by its co-energy.
 
-    With k what is kept, ``W' = constant k² / 2``, and the other variable is ``d/dt ∂W'/∂k``.
+    With k the variable kept, ``W' = constant k² / 2``, and the other variable is ``d/dt ∂W'/∂k``. It stores
+    ``k ∂W'/∂k - W'`` (J).
     """
 
     keeps: ClassVar[str]
     charge_field: ClassVar[str] = ""
     grounded: ClassVar[bool] = False
-    """Whether one of its ends is ground: what it keeps is measured from there."""
+    """Whether one of its ends must be ground, from which the variable it keeps is measured."""
 
     def constant(self, at: Terminals) -> Scalar:
-        """The charge for one of what is kept."""
+        """The charge for a unit of the variable kept.
+
+        Args:
+            at: the component's variables.
+        """
         raise NotImplementedError
 
     def kept(self) -> tuple[str, ...]:
-        """Its across variable, or its through variable."""
+        """Its across or its through variable, depending on its type."""
         return (self.keeps,)
 
     def kept_coenergy(self, at: Terminals) -> Scalar:
-        """Half the constant times the square of what is kept, or as given; not known of a charge."""
+        """``constant k² / 2`` (J), or as given; 0 of a charge, which the network integrates."""
         given = getattr(self, "coenergy", None)
         if given is not None:
             return self._law(at, given)
@@ -46,11 +51,15 @@ class Store(OnePort):
         return self.constant(at) * (kept * kept / 2)
 
     def charges(self, at: Terminals) -> tuple[Scalar, ...] | None:
-        """The charge where it is given as such."""
+        """The charge where it is given as such; else None, and it follows from the co-energy."""
         return None if self._charge is None else (self._law(at, self._charge),)
 
     def require_fields(self) -> None:
-        """Refuse also a store that is measured from ground and does not end there."""
+        """Refuse also a store that is measured from ground and does not end there.
+
+        Raises:
+            ModelError: a field is missing or one too many, or neither end is ground.
+        """
         super().require_fields()
         if self.grounded and GROUND not in self.between:
             meant = next((v for v in self.between if v.lower() in COMMON_NAMES), None)
@@ -75,14 +84,20 @@ class Store(OnePort):
 
 @dataclass(frozen=True)
 class AcrossStore(Store):
-    """A store of the A-type: ``Y = d/dt Q(X)``."""
+    """A store of the A-type: ``Y = d/dt Q(X)``.
+
+    It keeps X, as a capacitor its voltage and a mass its velocity [Rowell and Wormley 1997].
+    """
 
     keeps = ACROSS
 
 
 @dataclass(frozen=True)
 class ThroughStore(Store):
-    """A store of the T-type: ``X = d/dt Λ(Y)``."""
+    """A store of the T-type: ``X = d/dt Λ(Y)``.
+
+    It keeps Y, as an inductor its current and a spring its force [Rowell and Wormley 1997].
+    """
 
     keeps = THROUGH
 
@@ -90,6 +105,11 @@ class ThroughStore(Store):
 @dataclass(frozen=True)
 class Spring1D(OnePort):
     """A spring in 1-D mechanics: by its stiffness, or by a force or an energy of its displacement.
+
+    X is the velocity of the tail relative to the head, Y the force (N) or torque (N m) that presses the ends
+    together. Linear, ``dY/dt = stiffness X``, it keeps Y and stores ``Y² / (2 stiffness)`` (J). Else its
+    displacement x is a state, ``dx/dt = X``, and ``Y = force(x)`` or ``Y = dE/dx`` of its energy: the force
+    alone does not determine x where it is not monotonic.
 
     Attributes:
         stiffness: N/m, or N m/rad; it keeps its force; or
@@ -104,16 +124,16 @@ class Spring1D(OnePort):
     needs = (("stiffness", "force", "energy"),)
 
     def kept(self) -> tuple[str, ...]:
-        """Its force, if it is linear."""
+        """Its force or torque, if it is linear; else nothing."""
         return (THROUGH if self.stiffness is not None else STATIC,)
 
     def states(self) -> tuple[OwnState, ...]:
-        """Its displacement, if it is not."""
+        """Its displacement x (m or rad), if it is not linear."""
         letter, unit, about = DOMAINS[self.domain_name].across.integral
         return () if self.stiffness is not None else (OwnState("x", letter, unit, about),)
 
     def laws(self, at: Terminals) -> tuple[Scalar, ...]:
-        """The force of its displacement."""
+        """Residual: Y less the force or torque of the displacement; 0 of a linear spring."""
         if self.stiffness is not None:
             return (0,)
         x = at.states["x"]
@@ -122,13 +142,13 @@ class Spring1D(OnePort):
         return (at.Y[0] - at.derivative(at.value(self.energy, x=x), x),)
 
     def kept_coenergy(self, at: Terminals) -> Scalar:
-        """``Y² / (2 stiffness)``."""
+        """``Y² / (2 stiffness)`` (J) of a linear spring; else 0."""
         return 0 if self.stiffness is None else at.Y[0] * at.Y[0] / (2 * at.value(self.stiffness))
 
     def rates(self, at: Terminals) -> tuple[Scalar, ...]:
-        """The displacement grows with X."""
+        """``dx/dt = X``, if the displacement is a state."""
         return () if self.stiffness is not None else (at.X[0],)
 
     def own_energy(self, at: Terminals) -> Scalar:
-        """As given; not known of a force."""
+        """The energy at x (J), if it is given; 0 of a force, which the network integrates."""
         return 0 if self.energy is None else at.value(self.energy, x=at.states["x"])

@@ -1,4 +1,4 @@
-"""How a component's type becomes a word of the builder."""
+"""How a component's type becomes a method of the builder."""
 
 from __future__ import annotations
 
@@ -19,16 +19,19 @@ class connects:  # noqa: N801  (a line of the register reads as a verb)
     """A builder method that adds a component of one type: a line in the register."""
 
     def __init__(self, module: str, name: str) -> None:
-        """The type `name` of a file beside this one, which is not imported yet."""
+        """Remember a type by its name; its file is not imported yet.
+
+        Args:
+            module: the file, from `linegraph.components` on.
+            name: the type in it.
+        """
         self._place = module, name
 
     @cached_property
     def kind(self) -> type[Component]:
-        """The type."""
+        """The type; its file is imported when it is first needed."""
         module, name = self._place
-        found: type[Component] = getattr(
-            import_module(f"linegraph.components.scalar.{module}"), name
-        )
+        found: type[Component] = getattr(import_module(f"linegraph.components.{module}"), name)
         return found
 
     def __get__(self, model: Any, owner: type | None = None) -> Any:
