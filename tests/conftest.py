@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import gc
 import sys
+import zlib
+from collections import Counter
 from typing import TYPE_CHECKING
 
 import pytest
@@ -26,15 +28,36 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """Seeds of tests that are marked with them: every second of a few, or all with ``--all-forms``.
+    """Seeds of tests that are marked with them: a few, or all with ``--all-forms``.
 
     What one seed is asked by different tests of a file is asked one after the other: it is derived once.
     """
     found = metafunc.definition.get_closest_marker("seeds")
     if found is not None:
         few, every = found.args
-        wanted = every if metafunc.config.getoption("--all-forms") else few[::2]
+        wanted = every if metafunc.config.getoption("--all-forms") else few
         metafunc.parametrize("seed", wanted, scope="module")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Of a test marked with ``one_in(k)`` keep one case in k, or all with ``--all-forms`` or by name.
+
+    Tests with the same cases begin at different ones, so that together they see most of them.
+    """
+    if config.getoption("--all-forms"):
+        return
+    seen: Counter[str] = Counter()
+    kept, left_out = [], []
+    for item in items:
+        mark = item.get_closest_marker("one_in")
+        name = item.nodeid.partition("[")[0]
+        place = seen[name] + zlib.crc32(name.encode())
+        seen[name] += 1
+        chosen = mark is None or place % mark.args[0] == 0
+        (kept if chosen or item.nodeid in config.args else left_out).append(item)
+    if left_out:
+        items[:] = kept
+        config.hook.pytest_deselected(items=left_out)
 
 
 def pytest_collection_finish() -> None:

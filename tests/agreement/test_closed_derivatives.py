@@ -89,6 +89,7 @@ def reduced(point: Point, free: list[int], own: list[int], holonomic: int) -> Ar
     return np.vstack((going[free], np.imag(a[:, own]).T / STEP))
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("name", NAMES)
 def test_mechanisms(name: str, tmp_path: Path) -> None:
     model = closed_examples.read(name)

@@ -80,10 +80,10 @@ WITH_REACTIONS = (0, 4, 8, 12, 50)
 #   refused            one, 12
 #   loops              of revolute, cylindrical and spherical joints (1), of universal and fixed ones (30,
 #                      50), with a prismatic (47) and with a planar joint (168)
-FEW = (*range(12), 12, 13, 16, 18, 19, 21, 24, 25)
-FEW_OF_ANYTHING = (6, 14, 19, 30, 32, 37, 38, 42, 44)
+FEW = (*range(0, 12, 2), 12, 16, 19, 24)
+FEW_OF_ANYTHING = (6, 19, 32, 38, 44)
 FEW_SIMPLIFIED, FEW_UNREADABLE = (6, 36, 38, 42, 44), (12,)
-FEW_LOOPS = (1, 30, 47, 50, 168)
+FEW_LOOPS = (1, 47, 168)
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -792,6 +792,7 @@ SMALL = 3
 QUANTITIES = ("mass_matrix", "bias", "forces", "energy", "gravity", "coriolis_matrix")
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("name", sorted(path.stem for path in EXAMPLES.glob("*/*.toml")))
 def test_no_form_of_an_example_is_rejected(name: str) -> None:
     """A form that differs from what was derived is not used; that one was made at all is a bug."""

@@ -89,6 +89,7 @@ def at(tree: KinematicTree, q: Array, v: Array) -> TreeState:
 # ---- against the oracle
 
 
+@pytest.mark.one_in(2)
 @ALL
 def test_equations_are_those_of_newton_and_euler(seed: int) -> None:
     spec, _, numeric, states = case(seed)

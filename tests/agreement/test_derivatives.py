@@ -197,12 +197,12 @@ def random_point(seed: int) -> tuple[Point, np.random.Generator]:
     return Point(derivation, state.t, state.q, state.v, u), rng
 
 
-@pytest.mark.seeds(range(0, 120, 4), range(120))
+@pytest.mark.seeds(range(0, 120, 8), range(120))
 def test_random_mechanical_systems(seed: int) -> None:
     compare(*random_point(seed))
 
 
-@pytest.mark.seeds(range(0, 80, 4), range(80))
+@pytest.mark.seeds(range(0, 80, 8), range(80))
 def test_random_systems_with_networks(seed: int) -> None:
     case = case_of(seed, 1)
     r = case.reference

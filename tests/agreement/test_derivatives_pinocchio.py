@@ -35,6 +35,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     metafunc.parametrize("base", ["fixed", "floating"])
 
 
+@pytest.mark.one_in(2)
 def test_agrees_with_pinocchio(file: Path, base: str, tmp_path: Path) -> None:
     model, held = readable(file, base, 0.0)
     text = file.read_text()

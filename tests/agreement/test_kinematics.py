@@ -195,7 +195,7 @@ def frames_of(system: systems.System, draw: np.random.Generator) -> dict[str, st
     return {name.replace(".", "_"): name for name in found}
 
 
-@pytest.mark.seeds(range(0, 48, 4), range(100))
+@pytest.mark.seeds(range(0, 48, 8), range(100))
 def test_random_systems_agree_with_newton_euler(seed: int, tmp_path: Path) -> None:
     system = systems.random_system(seed)
     model = system.model
@@ -234,7 +234,7 @@ def test_random_systems_agree_with_newton_euler(seed: int, tmp_path: Path) -> No
         compare(module, moving, masses, given, seed)
 
 
-@pytest.mark.seeds((2, 10, 18, 22), range(60))
+@pytest.mark.seeds((2, 18), range(60))
 def test_operational_space_of_random_trees(seed: int, tmp_path: Path) -> None:
     """Six rows where a frame can move in all directions, three where it has three at least."""
     draw = np.random.default_rng(seed)
@@ -272,7 +272,7 @@ def test_operational_space_of_random_trees(seed: int, tmp_path: Path) -> None:
 # ---- closed loops: J is that of the tree's own v
 
 
-@pytest.mark.seeds((1, 11, 21, 31), range(60))
+@pytest.mark.seeds((1, 21), range(60))
 def test_closed_systems_agree_with_the_motions_of_their_trees(seed: int, tmp_path: Path) -> None:
     system = closed.random_system(seed)
     name = system.bodies[-1].name
@@ -362,7 +362,7 @@ def test_operational_space_with_loops(case: str, tmp_path: Path) -> None:
 # ---- networks beside mechanics: their states add columns of zeros
 
 
-@pytest.mark.seeds((0, 8, 14), range(40))
+@pytest.mark.seeds((0, 14), range(40))
 def test_states_of_networks_move_no_frame(seed: int, tmp_path: Path) -> None:
     system = mixed.random_system(seed)
     model = mixed.model_of(system)
@@ -420,7 +420,7 @@ def moved(module: Any, given: dict[str, Any], a: np.ndarray, time: float) -> dic
 
 
 @pytest.mark.parametrize("coordinates", ["joint", "absolute", "absolute-angle"])
-@pytest.mark.seeds((2, 5, 18), range(40))
+@pytest.mark.seeds((2, 18), range(40))
 def test_results_are_derivatives_of_each_other(seed: int, coordinates: str, tmp_path: Path) -> None:
     """Of closed systems too: the tree's own motion is asked for, whatever the loops allow."""
     system = closed.random_system(seed)

@@ -34,7 +34,7 @@ def sizes(drawn: Drawn) -> np.typing.NDArray[np.float64]:
     return np.array([x, y] * len(drawn.edges))
 
 
-@pytest.mark.seeds(range(0, SEEDS, SEEDS // 3), range(0, SEEDS, CHUNK))
+@pytest.mark.seeds(range(0, SEEDS, SEEDS // 2), range(0, SEEDS, CHUNK))
 def test_the_chosen_solution_is_found_in_c_and_in_python(seed: int, tmp_path: Path) -> None:
     for number in range(seed, seed + CHUNK):
         drawn = draw(number)

@@ -58,7 +58,7 @@ def model_of(parts: Sequence[Part]) -> Model:
     return model
 
 
-@pytest.mark.seeds(range(0, SEEDS, 3 * CHUNK), range(0, SEEDS, CHUNK))
+@pytest.mark.seeds(range(0, SEEDS, 6 * CHUNK), range(0, SEEDS, CHUNK))
 def test_states_and_matrices_are_those_of_the_pencil(seed: int) -> None:
     for number in range(seed, seed + CHUNK):
         parts = draw(number)

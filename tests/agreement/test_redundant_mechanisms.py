@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from linegraph.kinematics.links import KinematicTree
 
 COUNT = 1000
-FEW = range(0, COUNT, 37)
-IN_C = range(0, COUNT, 148)
+FEW = range(0, COUNT, 74)
+IN_C = range(0, COUNT, 296)
 """Those whose emitted C is compiled by default: every fourth of the few."""
 
 STATES = 3

@@ -999,6 +999,7 @@ def test_types_are_what_they_are_called(kind: str) -> None:
 # ---- what is emitted
 
 
+@pytest.mark.one_in(2)
 @EVERY
 def test_obeys_its_law(name: str, way: Way, find: Callable[[str, Way], System]) -> None:
     """At its edges, by formulas written apart."""
@@ -1011,6 +1012,7 @@ def test_obeys_its_law(name: str, way: Way, find: Callable[[str, Way], System]) 
         assert np.max(np.abs(zero)) <= EXACT * size
 
 
+@pytest.mark.one_in(2)
 @EVERY
 def test_keeps_its_energy(name: str, way: Way, find: Callable[[str, Way], System]) -> None:
     """What it takes in it stores or turns into heat: by hand, and as the derivation says itself."""
@@ -1167,6 +1169,7 @@ def test_pushes_what_it_drives(name: str, way: Way, find: Callable[[str, Way], S
 # ---- the two doors
 
 
+@pytest.mark.one_in(3)
 @NAMES
 def test_file_and_builder_say_the_same(name: str) -> None:
     for way in {*ways_of(name)} - {Way(False, False)}:

@@ -92,6 +92,7 @@ def run(program: Path) -> tuple[int, list[str]]:
 # ---- what is emitted holds
 
 
+@pytest.mark.one_in(2)
 def test_c_holds(compiled_example: str, tmp_path: Path) -> None:
     name = compiled_example
     status, lines = run(build(emitted(name), name, tmp_path, *WARNINGS))
@@ -104,6 +105,7 @@ def test_c_holds(compiled_example: str, tmp_path: Path) -> None:
     assert max(float(line.split()[3]) for line in functions) < 2e-12
 
 
+@pytest.mark.one_in(2)
 def test_python_holds(example: str, tmp_path: Path) -> None:
     files = emitted(example)
     load(files, example, tmp_path)
@@ -122,13 +124,14 @@ def holds(model: lg.Model, folder: Path) -> None:
         check.compare(function, slice(None))
 
 
-@pytest.mark.seeds(range(0, 60, 20), range(0, 200))
+@pytest.mark.seeds(range(0, 60, 40), range(0, 200))
 def test_random_mixed_models_hold(seed: int, tmp_path: Path) -> None:
     """Mechanics with networks, prescribed motions and elements."""
     holds(random_mixed.model_of(random_mixed.random_system(seed)), tmp_path / "mixed")
     holds(random_systems.random_system(seed).model, tmp_path / "system")
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("kind", ["absolute", "absolute-angle", "tree"])
 @pytest.mark.parametrize("name", ["slider_crank", "car_axis"])
 def test_other_coordinates_hold(name: str, kind: str, tmp_path: Path) -> None:

@@ -70,6 +70,7 @@ def requested(name: str) -> dict[str, str]:
 # ---- what is emitted holds
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("name", REQUESTED)
 def test_what_is_requested_holds(name: str, tmp_path: Path) -> None:
     """Derivatives, frames, the whole: in Python at all states and at one, in C beside all others."""
@@ -109,6 +110,7 @@ def test_corrupted_c_fails(name: str, tmp_path: Path) -> None:
     assert set(verdicts.values()) == {"ok"}
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize(
     ("name", "function"),
     [

@@ -24,6 +24,7 @@ pytestmark = pytest.mark.skipif(
 )
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize(
     ("name", "optimised"),
     [

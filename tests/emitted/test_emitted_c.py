@@ -74,6 +74,7 @@ def emitted() -> dict[str, dict[str, str]]:
     return {name: render(m, name=name, languages=["c"]) for name, m in models().items()}
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("compiler", COMPILERS)
 @pytest.mark.parametrize("name", ["panda", "panda_symbolic", "anymal", "random_tree"])
 def test_compiles_without_a_warning(

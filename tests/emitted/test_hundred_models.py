@@ -58,6 +58,7 @@ def test_there_are_a_hundred() -> None:
     assert set(DOZEN) <= set(NAMES)
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("compiler", COMPILERS)
 def test_no_compiler_warns(name: str, compiler: str, tmp_path: Path) -> None:
     lacking = targets.missing(COMPILERS[compiler][0])
@@ -78,6 +79,7 @@ def test_no_compiler_warns(name: str, compiler: str, tmp_path: Path) -> None:
             )
 
 
+@pytest.mark.one_in(2)
 def test_sanitizers_find_nothing(
     sanitized: str, request: pytest.FixtureRequest, tmp_path: Path
 ) -> None:
@@ -96,6 +98,7 @@ def test_sanitizers_find_nothing(
         assert said.startswith("sum 0 ")
 
 
+@pytest.mark.one_in(2)
 def test_floats_are_as_good_as_floats_can_be(name: str, tmp_path: Path) -> None:
     module = targets.module(name)
     rng = np.random.default_rng(1)

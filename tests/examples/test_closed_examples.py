@@ -778,6 +778,7 @@ def audit(s: System) -> None:
         assert np.max(np.abs(sums)) <= 1e-11 * (1 + np.max(np.abs(powers)))
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("name", AUDITED)
 def test_powers_of_all_edges_sum_to_zero(name: str) -> None:
     audit(system(name))
@@ -789,6 +790,7 @@ def test_powers_of_robots_sum_to_zero(name: str, base: str) -> None:
     audit(robot(name, base))
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize(("name", "kind"), KINDS)
 def test_powers_sum_to_zero_in_other_coordinates(name: str, kind: str) -> None:
     audit(twin(name, kind))
@@ -910,6 +912,7 @@ int main(void)
 """
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("compiler", COMPILERS)
 @pytest.mark.parametrize("name", EMITTED)
 def test_compiles_without_a_warning(name: str, compiler: str, tmp_path: Path) -> None:

@@ -189,7 +189,7 @@ def refused(seed: int, closed: bool) -> bool:
     return False
 
 
-@pytest.mark.seeds(range(4), range(400))
+@pytest.mark.seeds(range(0, 4, 2), range(400))
 def test_random_names_are_refused_or_change_nothing(seed: int) -> None:
     """Ten models each, the closed forms of one of them."""
     outcomes = [refused(10 * seed + k, closed=k == 0) for k in range(10)]
@@ -250,7 +250,7 @@ def refused_in_file(seed: int) -> bool:
     return False
 
 
-@pytest.mark.seeds(range(4), range(200))
+@pytest.mark.seeds(range(0, 4, 2), range(200))
 def test_random_names_in_files_are_refused_with_lines_or_change_nothing(seed: int) -> None:
     for k in range(10):
         refused_in_file(10 * seed + k)
@@ -291,7 +291,7 @@ def different(seed: int) -> Naming:
     return found
 
 
-@pytest.mark.seeds(range(4), range(100))
+@pytest.mark.seeds(range(0, 4, 2), range(100))
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 @pytest.mark.parametrize("symbolic", [False, True])
 def test_random_names_in_a_urdf_give_way_and_change_nothing(

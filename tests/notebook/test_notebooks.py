@@ -37,6 +37,7 @@ def loaded() -> ModuleType:
 refresh = loaded()
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("name", NAMES)
 def test_outputs_are_current(name: str) -> None:
     kept = refresh.read(FOLDER / f"{name}.ipynb")

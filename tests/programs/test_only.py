@@ -30,6 +30,7 @@ def test_the_command_line_knows_all_functions() -> None:
     assert set(FUNCTIONS) == set(PROGRAMS) - {"algebraic_loop"}
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("function", FUNCTIONS)
 @pytest.mark.parametrize("file", [PENDULUM, LOOP])
 def test_each_alone_is_a_module(file: str, function: str, tmp_path: Path) -> None:

@@ -156,6 +156,7 @@ BOMBS: dict[str, tuple[Callable[[], str], str]] = {
 }
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are Linux's")
 @pytest.mark.parametrize("bomb", BOMBS)
 def test_bombs_are_refused_soon_and_in_little_memory(bomb: str, tmp_path: Path) -> None:

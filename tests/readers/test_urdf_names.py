@@ -124,7 +124,7 @@ def test_a_joint_and_its_link_may_be_called(name: str, tmp_path: Path) -> None:
     assert passed(["r", name, "two", "three", name, "second", "third"], False, tmp_path)
 
 
-@pytest.mark.seeds(range(6), range(300))
+@pytest.mark.seeds(range(0, 6, 2), range(300))
 def test_any_names_give_working_code_or_one_refusal(seed: int, tmp_path: Path) -> None:
     """Half of the names from the list, half put together from two of it; a file names nothing twice."""
     draw = random.Random(seed)

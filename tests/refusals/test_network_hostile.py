@@ -588,6 +588,7 @@ BOMBS: dict[str, tuple[Callable[[], str], str]] = {
 }
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are Linux's")
 @pytest.mark.parametrize("bomb", BOMBS)
 def test_bombs_are_soon_over(bomb: str, tmp_path: Path) -> None:

@@ -1112,6 +1112,7 @@ LOOPS: dict[str, tuple[str, Any]] = {
 }
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("name", LOOPS)
 def test_what_a_loop_gives_solves_it(name: str, tmp_path: Path) -> None:
     """Newton's method says so where it has stopped elsewhere: never a number that is no solution."""

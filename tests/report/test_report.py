@@ -85,6 +85,7 @@ WITH_REACTIONS = ("cart_pole", "furuta", "heavy_top", "panda")
 COMPILED = ("four_bar", "panda")
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("name", NAMES)
 def test_the_report_of(name: str, tmp_path: Path) -> None:
     """One test for each example: its document is made once, in whatever process."""
