@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import sqrt
 from typing import TYPE_CHECKING
 
+from linegraph.components.forces import POINT_FORCES
 from linegraph.drawing.bodies import quartered
 from linegraph.drawing.letters import clean, width
 from linegraph.drawing.outline import distance2, far, hull_of, inside
@@ -200,7 +201,7 @@ class Sketch(Stand):
         total = {pair: ends.count(pair) for pair in ends}
         for tie, (a, b) in zip(self.poses.ties, ends, strict=True):
             shape: list[Item] = []
-            if tie.kind == "load":
+            if tie.kind in POINT_FORCES:
                 shape = _load(a)
             elif not tie.joint:
                 k = seen[(a, b)] = seen.get((a, b), -1) + 1
@@ -286,7 +287,7 @@ class Sketch(Stand):
                 more = f" (+{len(bodies) - 1})" if len(bodies) > 1 else ""
                 items += self.labels.place(bodies[0] + more, self.middle(link), bold=True)
         for tie in self.poses.ties:
-            if tie.kind == "load" or not tie.joint:
+            if tie.kind in POINT_FORCES or not tie.joint:
                 at = self.middles.get(tie.name, self.seen(tie.head))
                 items += self.labels.place(tie.name, at, color=GREY)
         reach = max((box.right for box in self.labels.taken), default=0)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from linegraph.components.body import GROUND
 from linegraph.components.body_mass import mass_center, resolved
-from linegraph.components.forces import Load
+from linegraph.components.forces import PointForce
 from linegraph.errors import ModelError
 from linegraph.kinematics.ground_frames import seated
 from linegraph.kinematics.links import Seat
@@ -175,7 +175,7 @@ def _ties(
         return link, _floats(seated(chords.frames, Seat(link, whole.at, whole.rotation)).origin)
 
     for element in model.elements:
-        if isinstance(element, Load):
+        if isinstance(element, PointForce):
             link, place = end(element.at)
             ties.append(TiePose(element.name, element.kind, (GROUND_LINK, link), place, place))
         elif element.between is not None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from linegraph.algebra.protocol import set_label
-from linegraph.components.forces import Element, Load
+from linegraph.components.forces import Element, PointForce
 from linegraph.components.joints import Joint
 from linegraph.components.parameters import names_in
 from linegraph.components.scalar.forces import NetworkForce, forces_of
@@ -59,7 +59,7 @@ def applied(chords: Chords, *, driven: bool, network: str | None = None) -> Appl
     """
     tree = chords.state.tree
     given = tree.system.force_elements
-    found: list[Element | Load] = [
+    found: list[Element | PointForce] = [
         e for e in given if depends_on_inputs(tree.system, e.values()) == driven
     ]
     storing = [] if driven else [e for e in given if e not in found]
@@ -71,9 +71,9 @@ def applied(chords: Chords, *, driven: bool, network: str | None = None) -> Appl
 
 def exerted(
     chords: Chords,
-    elements: Sequence[Element | Load],
+    elements: Sequence[Element | PointForce],
     part: str,
-    storing: Sequence[Element | Load] = (),
+    storing: Sequence[Element | PointForce] = (),
 ) -> Applied:
     """What some elements and loads do, and the networks.
 
@@ -132,7 +132,7 @@ class _Acting:
         self._efforts: list[Scalar] = [0] * len(tree.velocities)
         self._potential: Scalar = 0
 
-    def of(self, elements: Sequence[Element | Load]) -> Applied:
+    def of(self, elements: Sequence[Element | PointForce]) -> Applied:
         """All of them."""
         for element in elements:
             set_label(self._algebra, f"{element.kind} {element.name}")
@@ -153,9 +153,9 @@ class _Acting:
                 self._efforts[place] = self._efforts[place] + exchange.force(k, self._laws.part)
         return Applied(self._wrenches, self._efforts, self._potential)
 
-    def _take(self, element: Element | Load) -> None:
-        if isinstance(element, Load):
-            self._push(self._laws.terminal(element.at), *self._laws.load(element))
+    def _take(self, element: Element | PointForce) -> None:
+        if isinstance(element, PointForce):
+            self._push(self._laws.terminal(element.at), *self._laws.wrench(element))
         elif element.joint is not None:
             self._in_joint(element, element.joint)
         else:

@@ -17,7 +17,7 @@ from linegraph.algebra.protocol import set_label
 from linegraph.components.body import GROUND, MASS_CENTER
 from linegraph.components.body_mass import mass_center
 from linegraph.components.constraints.base import Constraint
-from linegraph.components.forces import Element, Load
+from linegraph.components.forces import Element, PointForce
 from linegraph.dynamics.edge_quantities import NOTHING, EdgeVariables, Wrench
 from linegraph.dynamics.force_laws import ForceLaws
 from linegraph.dynamics.orthogonality import applied_to
@@ -191,9 +191,9 @@ class InverseScheme:
             given = wrench.about(origin, self.center(body).origin).turned()
             needed[body] = needed[body] + given
 
-    def _ends_of(self, element: Element | Load) -> list[tuple[str, Wrench]]:
+    def _ends_of(self, element: Element | PointForce) -> list[tuple[str, Wrench]]:
         """What an element between points, or a load, exerts on its terminals."""
-        if isinstance(element, Load):
+        if isinstance(element, PointForce):
             return [(element.at, self.elements[element.name].through)]
         if element.between is None:
             return []
@@ -206,11 +206,11 @@ class InverseScheme:
         """Every element and load as an edge."""
         return {element.name: self._element(element) for element in self._model.elements}
 
-    def _element(self, element: Element | Load) -> EdgeVariables:
+    def _element(self, element: Element | PointForce) -> EdgeVariables:
         set_label(self._algebra, f"{element.kind} {element.name}")
-        if isinstance(element, Load):
+        if isinstance(element, PointForce):
             frame = self.terminal(element.at)
-            return EdgeVariables(Wrench(*self._laws.load(element)), frame.linear, frame.angular)
+            return EdgeVariables(Wrench(*self._laws.wrench(element)), frame.linear, frame.angular)
         if element.between is not None:
             tail, head = (self.terminal(end) for end in element.between)
             pull = self._laws.between(element)[1]
@@ -310,7 +310,7 @@ class InverseScheme:
         """Tail and head of every joint, constraint, element and load."""
         ends = {name: end.component.between for name, end in self._tree.ends.items()}
         for element in self._model.elements:
-            if isinstance(element, Load):
+            if isinstance(element, PointForce):
                 ends[element.name] = (GROUND, element.at)
             else:
                 ends[element.name] = element.between or ends[str(element.joint)]

@@ -10,7 +10,6 @@ from collections import ChainMap
 from typing import TYPE_CHECKING, Any
 
 from linegraph.components.forces import Element
-from linegraph.components.forces.load import BODY
 from linegraph.components.parameters import resolver
 from linegraph.components.scalar.forces import NetworkForce
 from linegraph.dynamics.law_names import joint_state, scope
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from linegraph.algebra.scalar import Scalar
-    from linegraph.components.forces import Load
+    from linegraph.components.forces import PointForce
     from linegraph.dynamics.chords import Chords
     from linegraph.kinematics.links import Closure
 
@@ -124,16 +123,10 @@ class ForceLaws:
         x, direction, v = self._line(element)
         return x, vector.scale(self._through(element, x, v), direction)
 
-    def load(self, load: Load) -> tuple[Vector, Vector]:
-        """A load's force and torque in ground axes."""
-        _, frame = self.terminal(load.at)
-        force, torque = (
-            tuple(self.resolve(component) for component in given)
-            for given in (load.force, load.torque)
-        )
-        if load.axes == BODY:
-            force, torque = times(frame.rotation, force), times(frame.rotation, torque)
-        return force, torque
+    def wrench(self, acting: PointForce) -> tuple[Vector, Vector]:
+        """A load's force and torque on its body, in ground axes, about its terminal's origin."""
+        _, point = self.terminal(acting.at)
+        return acting.wrench(self._algebra, point, self.resolve)
 
     def taken(self, name: str) -> Scalar:
         """The power that a force element takes in."""

@@ -24,7 +24,7 @@ from linegraph.ir.dag import Dag
 if TYPE_CHECKING:
     from linegraph.algebra.protocol import Algebra
     from linegraph.algebra.scalar import Scalar
-    from linegraph.components.forces import Load
+    from linegraph.components.forces import PointForce
     from linegraph.components.forces.base import Resolve
     from linegraph.model.system import System
 
@@ -66,7 +66,7 @@ def stored(
     return Replay(algebra, symbol)(found)
 
 
-def holds(model: System, element: Element | Load) -> bool:
+def holds(model: System, element: Element | PointForce) -> bool:
     """Whether an element that inputs drive has a potential energy: a law with a part that they do not."""
     if not isinstance(element, (Law, Spring)):
         return False
@@ -127,13 +127,13 @@ def require_energies(model: System) -> None:
             raise ModelError(who, problem)
 
 
-def _law(element: Element | Load) -> Any:
+def _law(element: Element | PointForce) -> Any:
     """The expression of an element's tension; of a linear spring its stiffness."""
     force = getattr(element, "force", None)
     return element.stiffness if force is None and isinstance(element, Spring) else force
 
 
-def _potential(model: System, element: Element | Load) -> Scalar | None:
+def _potential(model: System, element: Element | PointForce) -> Scalar | None:
     """The energy over the DAG of a trace; None of an element that knows its own.
 
     Raises:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from linegraph.algebra.scalar import Scalar
-    from linegraph.components.forces import Element, Load
+    from linegraph.components.forces import Element, PointForce
     from linegraph.kinematics.links import KinematicTree
     from linegraph.kinematics.state_layout import Freedom
     from linegraph.model.system import System
@@ -173,10 +173,10 @@ class Bearings:
 
     damping: dict[str, Scalar]
     friction: dict[str, Scalar]
-    others: tuple[Element | Load, ...]
+    others: tuple[Element | PointForce, ...]
 
 
-def friction_values(tree: KinematicTree, elements: Iterable[Element | Load]) -> Bearings:
+def friction_values(tree: KinematicTree, elements: Iterable[Element | PointForce]) -> Bearings:
     """Separate elements into parameters of joints and all others.
 
     An element is a parameter if it acts along a joint that has some, and its values are constants.
@@ -192,7 +192,7 @@ def friction_values(tree: KinematicTree, elements: Iterable[Element | Load]) -> 
     known = {axis.joint: axis for axis in axes(tree)}
     damping: dict[str, Scalar] = dict.fromkeys(known, 0)
     friction: dict[str, Scalar] = dict.fromkeys(known, 0)
-    others: list[Element | Load] = []
+    others: list[Element | PointForce] = []
     for element in elements:
         seat = _seat(tree, known, element)
         constant = all(names_in(value) <= set(tree.system.parameters) for value in element.values())
@@ -216,7 +216,7 @@ def friction_values(tree: KinematicTree, elements: Iterable[Element | Load]) -> 
 
 
 def _seat(
-    tree: KinematicTree, known: Mapping[str, Axis], element: Element | Load
+    tree: KinematicTree, known: Mapping[str, Axis], element: Element | PointForce
 ) -> tuple[Axis, Scalar] | None:
     """The joint whose parameters an element adds to, and the ratio of the two joints' rates."""
     joint = getattr(element, "joint", None)

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
     from linegraph.components.constraints import Constraint
     from linegraph.components.constraints.relation import Relation
-    from linegraph.components.forces import Element, Load
+    from linegraph.components.forces import Element, PointForce
     from linegraph.components.joints import Joint
     from linegraph.model.coupling import Coupling
 
 
 Kind = TypeVar("Kind", bound="Joint")
-Force = TypeVar("Force", bound="Element | Load")
+Force = TypeVar("Force", bound="Element | PointForce")
 Limit = TypeVar("Limit", bound="Constraint | Relation")
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from linegraph.components.body import GROUND, MASS_CENTER, Body, inertia_of, unit
 from linegraph.components.constraints import Blade, Constraint, Driver, Rod, Rolling, aligned
 from linegraph.components.constraints.relation import Relation
-from linegraph.components.forces import Damper, Element, Friction, Law, Load, Spring, Stop
+from linegraph.components.forces import Damper, Drag, Element, Friction, Law, Load, Spring, Stop
 from linegraph.components.forces.load import BODY, WORLD
 from linegraph.components.joints import (
     Compound,
@@ -30,7 +30,7 @@ from linegraph.components.validation import finite, plain, require_new, require_
 from linegraph.errors import ModelError
 from linegraph.model.body_handle import BodyHandle, Force, Kind, Limit
 from linegraph.model.bounds import Bounded
-from linegraph.model.builder_words import Shown, Terminal, adds, applies, constrains
+from linegraph.model.builder_words import Shown, Terminal, adds, applies, constrains, pushes
 from linegraph.model.choices import Choices, chosen
 from linegraph.model.coupling import Coupling
 from linegraph.model.macros import Macros, followers_at, locked
@@ -41,6 +41,7 @@ from linegraph.spatial.vector import ZERO, Vector
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from linegraph.components.forces import PointForce
     from linegraph.spatial.placement import Placement
 
 STANDARD_GRAVITY: Vector = (0, 0, -9.81)
@@ -80,7 +81,7 @@ class Model(Shown, Words, Macros, Bounded, Snapshots):
         self.ground_frames: dict[str, Placement] = {}
         self.parameters: dict[str, Parameter] = {}
         self._inputs: dict[str, Input] = {}
-        self._elements: dict[str, Element | Load] = {}
+        self._elements: dict[str, Element | PointForce] = {}
         self._constraints: dict[str, Constraint | Relation] = {}
         self.choices = Choices()
         self.outputs: list[Output] = []
@@ -97,6 +98,7 @@ class Model(Shown, Words, Macros, Bounded, Snapshots):
     friction = applies(Friction)
     stop = applies(Stop)
     law = applies(Law)
+    drag = pushes(Drag)
 
     rod = constrains(Rod)
     driver = constrains(Driver)
@@ -175,7 +177,7 @@ class Model(Shown, Words, Macros, Bounded, Snapshots):
         return tuple(self._inputs.values())
 
     @property
-    def force_elements(self) -> tuple[Element | Load, ...]:
+    def force_elements(self) -> tuple[Element | PointForce, ...]:
         """The force elements and loads in declared order."""
         return tuple(self._elements.values())
 

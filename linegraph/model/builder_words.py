@@ -6,13 +6,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec
 
 from linegraph.components.joints import Joint
+from linegraph.components.validation import vector
 from linegraph.display import Displayed
 from linegraph.model.body_handle import BodyHandle, Builder, Kind, Limit
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from linegraph.components.forces import Element
+    from linegraph.components.forces import Element, PointForce
 
 Ask = ParamSpec("Ask")
 
@@ -75,6 +76,21 @@ def applies(kind: Callable[Concatenate[str, Ask], Element]) -> Any:
     apply.__doc__ = kind.__doc__
     apply.__name__ = str(getattr(kind, "kind", apply.__name__))
     return apply
+
+
+def pushes(kind: Callable[Concatenate[str, str, Ask], PointForce]) -> Any:
+    """The builder method for a type of force on a body at a terminal; its docstring is that of the type."""
+
+    def push(self: Builder, name: str, at: Terminal, **kw: Any) -> PointForce:
+        make: Any = kind
+        who = f'{make.kind} "{name}"'
+        given = {key: vector(x, who) if key in make.vectors else x for key, x in kw.items()}
+        force: PointForce = make(name, str(at), **given)
+        return self.add_element(force)
+
+    push.__doc__ = kind.__doc__
+    push.__name__ = str(getattr(kind, "kind", push.__name__))
+    return push
 
 
 def constrains(kind: Callable[Concatenate[str, tuple[str, str], Ask], Limit]) -> Any:

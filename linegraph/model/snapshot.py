@@ -8,7 +8,7 @@ from linegraph.model.system import System, frozen, settled
 from linegraph.model.terminal_graphs import system_graph, terminals_of
 
 if TYPE_CHECKING:
-    from linegraph.components.forces import Element, Load
+    from linegraph.components.forces import Element, PointForce
     from linegraph.graph.multigraph import SystemGraph
     from linegraph.model.choices import Choices
     from linegraph.spatial.placement import Placement
@@ -66,7 +66,7 @@ class Snapshots:
         )
 
     @property
-    def elements(self) -> tuple[Element | Load, ...]:
+    def elements(self) -> tuple[Element | PointForce, ...]:
         """Force elements and loads, and the forces that edges of networks exert on the mechanics."""
         return self.system().elements
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from linegraph.components.constraints import Constraint
     from linegraph.components.constraints.relation import Relation
     from linegraph.components.domains import Domain
-    from linegraph.components.forces import Element, Load
+    from linegraph.components.forces import Element, PointForce
     from linegraph.components.joints import Joint
     from linegraph.components.parameters import Input, Parameter
     from linegraph.components.scalar.base import Component
@@ -71,7 +71,7 @@ class System(Displayed):
     ground_frames: Mapping[str, Placement] = _nothing()
     joints: tuple[Joint, ...] = ()
     couplings: tuple[Coupling, ...] = ()
-    force_elements: tuple[Element | Load, ...] = ()
+    force_elements: tuple[Element | PointForce, ...] = ()
     constraints: tuple[Constraint, ...] = ()
     relations: tuple[Relation, ...] = ()
     components: tuple[Component, ...] = ()
@@ -94,7 +94,7 @@ class System(Displayed):
         return self
 
     @property
-    def elements(self) -> tuple[Element | Load, ...]:
+    def elements(self) -> tuple[Element | PointForce, ...]:
         """Force elements and loads, and the forces that edges of networks exert on the mechanics."""
         return (*self.force_elements, *forces_of(self.components))
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from linegraph.components.body import GROUND, MASS_CENTER
 from linegraph.components.domains import ROTATION, TRANSLATION
-from linegraph.components.forces import Element, Load
+from linegraph.components.forces import Element, PointForce
 from linegraph.components.scalar.branches import edges_of, terminal_graph
 from linegraph.components.validation import nearest
 from linegraph.errors import ModelError
@@ -76,14 +76,16 @@ def _ground_edges(model: System) -> list[Edge]:
     ]
 
 
-def _element_edges(model: System, element: Element | Load, terminals: Terminals) -> list[Edge]:
+def _element_edges(
+    model: System, element: Element | PointForce, terminals: Terminals
+) -> list[Edge]:
     """The edges of an element: parallel to its joint, between its ends, or from ground to a load's point.
 
     Raises:
         ModelError: a terminal or a joint does not exist, or the joint has several freedoms.
     """
     who = f'{element.kind} "{element.name}"'
-    if isinstance(element, Load):
+    if isinstance(element, PointForce):
         _require_terminal(who, element.at, terminals)
         return [Edge(element.name, element.name, d, GROUND, element.at) for d in MECHANICAL]
     if element.between is not None:

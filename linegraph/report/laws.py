@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.algebra.residues import CONSTANT
 from linegraph.components.body import MASS_CENTER
 from linegraph.components.domains import SPATIAL
-from linegraph.components.forces import Element, Load
+from linegraph.components.forces import Element, PointForce
 from linegraph.components.forces.load import BODY
 from linegraph.components.joints.base import BY_INPUT
 from linegraph.ir.dag import SUB, SYMBOL, Node
@@ -40,6 +40,7 @@ from linegraph.report.document import (
 )
 from linegraph.report.nodes import Nodes
 from linegraph.report.system import letter
+from linegraph.spatial.rotation import IDENTITY_MATRIX
 from linegraph.spatial.vector import times
 
 LONGEST_CELL = 60
@@ -230,7 +231,9 @@ def _elements(subject: Subject) -> tuple[Block, ...]:
     rows: list[EquationRow] = []
     for element in subject.model.force_elements:
         rows += (
-            _load(subject, element) if isinstance(element, Load) else [_element(subject, element)]
+            _load(subject, element)
+            if isinstance(element, PointForce)
+            else [_element(subject, element)]
         )
     text: Text = (
         "A positive through variable ", Name("y"), " of an element pulls: its two points together, along the "
@@ -276,13 +279,39 @@ def element_motion(subject: Subject, element: Element) -> tuple[Any, Any]:
     return symbol("", name), symbol("", f"{name}_dot")
 
 
-def _load(subject: Subject, load: Load) -> list[EquationRow]:
+def _load(subject: Subject, load: PointForce) -> list[EquationRow]:
+    """The force and the torque of a load by components; the velocity of its terminal is a symbol."""
+    names = [f"{c}(velocity of {load.name})" for c in "xyz"]
+    for name, c in zip(names, "xyz", strict=True):
+        subject.look.names[name] = Name("v", (load.name, c))
+    velocity = tuple(subject.algebra.symbol("", name) for name in names)
+    # given in the body's axes, components stay as given: the text below the table says so
+    point = _MovingPoint(IDENTITY_MATRIX, velocity)
     rows = []
-    for symbol, parts in (("f", load.force), ("τ", load.torque)):
-        value = subject.vector(parts)
-        if value != ZERO:
-            rows.append(EquationRow(vector(symbol, load.name), value))
+    for symbol, part in zip(
+        "fτ", load.wrench(subject.algebra, point, subject.resolve), strict=True
+    ):
+        entries = tuple(subject.expression(_of_reals(x)) for x in part)
+        if any(entry != ZERO for entry in entries):
+            rows.append(EquationRow(vector(symbol, load.name), Components(entries)))
     return rows
+
+
+def _of_reals(x: Any) -> Any:
+    """An expression that is simpler because all its symbols are real: max(0, a^2 + b^2) is the sum."""
+    if not hasattr(x, "free_symbols"):
+        return x
+    from sympy import Dummy
+
+    reals = {symbol: Dummy(real=True) for symbol in sorted(x.free_symbols, key=str)}
+    return x.subs(reals).subs({real: symbol for symbol, real in reals.items()})
+
+
+class _MovingPoint(NamedTuple):
+    """A terminal whose velocity is a symbol."""
+
+    rotation: Any
+    linear: Any
 
 
 # ---- networks

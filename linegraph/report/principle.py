@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from linegraph.components.domains import ROTATION, TRANSLATION
-from linegraph.components.forces import Load
+from linegraph.components.forces import PointForce
 from linegraph.notation.tree import TRANSPOSED, ZERO, Math, Name, Over, Power, Product, Sum, total
 from linegraph.report.document import Block, Code, EquationRow, Formulas, Inline, Section, said
 from linegraph.report.graphs import called
@@ -143,7 +143,7 @@ def _left(subject: Subject) -> Math | None:
         )
     terms += _efforts(subject)
     for element in model.force_elements:
-        if isinstance(element, Load):
+        if isinstance(element, PointForce):
             terms.append(
                 (False, dotted(vector("f", element.name), vector("v", element.name, before="δ")))
             )

@@ -88,7 +88,7 @@ def chain() -> lg.Derivation:
         ("x", "x", "x", "<mi>x</mi>"),
         ("a_x", "x″", r"\ddot{x}", '<mover accent="true"><mi>x</mi><mo>¨</mo></mover>'),
         ("u_x", "u_x", "u_{x}", "<msub><mi>u</mi><mi>x</mi></msub>"),
-        ("theta1_dot", "θ₁′", r"\dot{\theta}_{1}", "<msub><mover accent=\"true\"><mi>θ</mi><mo>˙</mo>"
+        ("theta1_dot", "θ₁′", r"\dot{\theta}_{1}", '<msub><mover accent="true"><mi>θ</mi><mo>˙</mo>'
          "</mover><mn>1</mn></msub>"),
         ("u_theta1", "u_θ₁", r"u_{\theta_{1}}",
          "<msub><mi>u</mi><msub><mi>θ</mi><mn>1</mn></msub></msub>"),

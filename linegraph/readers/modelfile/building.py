@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.components.body import GROUND
 from linegraph.components.constraints import CONSTRAINTS
-from linegraph.components.forces import ELEMENTS
+from linegraph.components.forces import ELEMENTS, POINT_FORCES
 from linegraph.components.joints import JOINTS
 from linegraph.components.scalar import COMPONENTS
 from linegraph.model.builder import Model
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from linegraph.model.body_handle import BodyHandle
     from linegraph.readers.modelfile.document import ModelText
 
-SHARED = {*JOINTS, *ELEMENTS, "load", *CONSTRAINTS, "relation", *COMPONENTS}
+SHARED = {*JOINTS, *ELEMENTS, *POINT_FORCES, *CONSTRAINTS, "relation", *COMPONENTS}
 """Types that name an edge, so that their names must differ from each other."""
 
 THINGS = {**dict.fromkeys(JOINTS, "joint"), "frame": "frame"}
@@ -123,7 +123,7 @@ class _Builder:
         for kind, name in self._tables("frame"):
             self._ground_frame(kind, name)
         self._joints()
-        for kind, name in self._tables(*ELEMENTS, "load"):
+        for kind, name in self._tables(*ELEMENTS, *POINT_FORCES):
             self._element(kind, name)
         for kind, name in self._tables(*CONSTRAINTS, "relation"):
             self._element(kind, name)

@@ -13,7 +13,7 @@ from inspect import cleandoc
 from typing import TYPE_CHECKING, Any
 
 from linegraph.components.constraints import CONSTRAINTS, Constraint
-from linegraph.components.forces import ELEMENTS, Element
+from linegraph.components.forces import ELEMENTS, POINT_FORCES, Element, Load, PointForce
 from linegraph.components.forces.load import BODY, WORLD
 from linegraph.components.joints import JOINTS, Joint
 from linegraph.components.joints.compound import PARTS
@@ -116,15 +116,11 @@ FOLLOWS = Table(
         ),
     }
 )
-LOAD = Table(
-    {
-        "at": Field(Terminal(), "where it acts: body or body.frame", True),
-        "force": Field(vector(Scope.STATE), "N"),
-        "torque": Field(vector(Scope.STATE), "N m"),
-        "axes": Field(Word((WORLD, BODY)), '"world" (default) or "body": axes of what is given'),
-    },
-    needs=(("force", "torque"),),
-)
+LOAD = {
+    "force": Field(vector(Scope.STATE), "N"),
+    "torque": Field(vector(Scope.STATE), "N m"),
+    "axes": Field(Word((WORLD, BODY)), '"world" (default) or "body": axes of what is given'),
+}
 ROTOR = Table(
     {
         "joint": Field(JointName(), "the revolute joint it drives", True),
@@ -316,6 +312,20 @@ def element_table(name: str) -> Table:
     return Table(places | own, (*groups, *kind.needs), groups, about)
 
 
+def point_force_table(name: str) -> Table:
+    """Return the table of a force on a body at a terminal."""
+    kind = POINT_FORCES[name]
+    entries = {"at": Field(Terminal(), "where it acts: body or body.frame", True)}
+    if kind is Load:
+        return Table(entries | LOAD, needs=kind.needs)
+    own = {
+        key: replace(entry, kind=vector(Scope.STATE) if key in kind.vectors else Real(Scope.STATE))
+        for key, entry in _own(kind, PointForce).items()
+    }
+    about = (kind.__doc__ or "").strip().split("\n")[0]
+    return Table(entries | own, kind.needs, (), about)
+
+
 def constraint_table(name: str) -> Table:
     """Return the table of a constraint type."""
     kind = CONSTRAINTS[name]
@@ -333,7 +343,7 @@ TYPES: Mapping[str, Table] = {
     "frame": FRAME,
     **{name: joint_table(name) for name in JOINTS},
     **{name: element_table(name) for name in ELEMENTS},
-    "load": LOAD,
+    **{name: point_force_table(name) for name in POINT_FORCES},
     **{name: constraint_table(name) for name in CONSTRAINTS},
     "relation": RELATION,
     "rotor": ROTOR,

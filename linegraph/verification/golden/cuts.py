@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from linegraph.algebra.jets import Jet, Jets, lifted
 from linegraph.components.constraints.base import Constraint, Instant, Pose, Prescribed
-from linegraph.components.forces import Element, Load
+from linegraph.components.forces import Element, PointForce
 from linegraph.components.parameters import resolver
 from linegraph.components.scalar.forces import NetworkForce
 from linegraph.dynamics.chords import equations
@@ -134,10 +134,10 @@ class Cuts:
         """Wrench of every element and load on its head, about the head's origin, in ground axes, by name."""
         return {element.name: self._element(element) for element in self.model.elements}
 
-    def _element(self, element: Element | Load) -> Pull:
+    def _element(self, element: Element | PointForce) -> Pull:
         np = self.walk.np
-        if isinstance(element, Load):
-            force, torque = (_array(np, x) for x in self.acting.load(element))
+        if isinstance(element, PointForce):
+            force, torque = (_array(np, x) for x in self.acting.wrench(element))
             return self._pull(force, torque, element.at)
         if element.between is not None:
             tail, head = (self.place(end) for end in element.between)
@@ -275,7 +275,7 @@ class Cuts:
                 on[body] = on[body].with_(pull.turned())
 
         for element in self.model.elements:
-            if isinstance(element, Load):
+            if isinstance(element, PointForce):
                 give(element.at, self.elements[element.name])
             elif element.between is not None:
                 give(element.between[1], self.elements[element.name])

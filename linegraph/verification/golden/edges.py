@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from linegraph.algebra.jets import Jet, Jets, lifted
 from linegraph.components.body import GROUND, MASS_CENTER
 from linegraph.components.constraints.base import Constraint
-from linegraph.components.forces import Load
+from linegraph.components.forces import PointForce
 from linegraph.model.choices import GROUND_AXES, HEAD
 from linegraph.model.terminal_graphs import terminals_of
 from linegraph.verification.golden.constraints import Constraints
@@ -95,7 +95,7 @@ class Edges:
         joints = {name: end.component.between for name, end in self.cuts.walk.tree.ends.items()}
         found |= {name: (*between, False) for name, between in joints.items()}
         for element in self.cuts.model.elements:
-            if isinstance(element, Load):
+            if isinstance(element, PointForce):
                 found[element.name] = (GROUND, element.at, False)
             else:
                 between = element.between or joints[str(element.joint)]
@@ -239,7 +239,9 @@ class Edges:
             found[f"{body}/inertia"] = (pull, pull.torque, False)
         for name, pull in self.cuts.joints.items():
             found[name] = (pull, pull.torque, True)
-        loads = {element.name for element in self.cuts.model.elements if isinstance(element, Load)}
+        loads = {
+            element.name for element in self.cuts.model.elements if isinstance(element, PointForce)
+        }
         for name, pull in self.cuts.elements.items():
             found[name] = (pull, pull.torque, name not in loads)
         received: dict[str, Pull] = {}
