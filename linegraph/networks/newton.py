@@ -1,108 +1,26 @@
-"""Newton's method for the algebraic loops of a network, in floats: the reference of what is emitted.
-
-A step is halved until the largest residual falls in proportion to what is left of it. That is enough for most
-loops, but not where a law is flat, as a saturation is and a dead zone, or has a kink that the step would have
-to cross. Then every law of the loop gets a resistance in series and a conductance in parallel, which vanish
-level by level; each level starts at the solution of the one before. Laws that rise, together with them, rise
-strictly and not too steeply: each level has exactly one solution, and it moves to that of the loop itself.
-"""
+"""Newton's method for the algebraic loops of a network: the algorithm of emitted code, run in floats."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from linegraph.algebra.differentiation import Replay
 from linegraph.algebra.protocol import Floats
 from linegraph.errors import ModelError
+from linegraph.ir.algorithms.language import reals
+from linegraph.ir.algorithms.newton import is_only, search
 from linegraph.networks.static import EASE, LOOP
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from linegraph.algebra.differentiation import Symbol
+    from linegraph.ir.algorithms.language import ModuleAtState, Reals
     from linegraph.networks.network import Network
 
-    Vector = list[float]
-    Evaluate = Callable[[Vector, float, float], "_Point"]
-    """The loop as a function of its unknowns and of the resistance and the conductance at its laws."""
 
-MOST_STEPS = 200
-MOST_HALVINGS = 40
-DECREASE = 1e-4
-"""The part of what a step promises by which the residual has to fall."""
-
-BEGINS = (0.0, 1.0, -1.0)
-RESISTANCES = (1.0, 1e3, 1e-3)
-"""The resistance (ohm, or what the subspace has) by which currents are compared with voltages."""
-
-NEAR, NEARER = 0.01, 12
-"""Where the search with resistances begins; not at zero, where roots are steep and powers flat. It begins at
-a tenth of that, up to so many times, where exponentials overflow."""
-
-LEVELS = 24
-FIRST, RATIO = 0.5, 0.31622776601683794
-"""The first level's resistances, and by how much they shrink from level to level."""
-
-LEVEL_STEPS = 50
-LEVEL_GAP = 1e-9
-"""A level is solved when its residual has fallen to this part of what it was."""
-
-MISSED, MOST_MISSED = 1e-3, 3
-"""A level is missed if more than this part of its residual is left; so many in turn, and the way ends."""
-
-ROUNDING = 1e-13
-"""A residual below this fraction of its terms is zero."""
-
-PROBE_EASE, PROBE = 1e-8, 1e-6
-"""The resistances by which a singular Jacobian is made regular, and how far along its flattest direction
-another solution is looked for."""
-
-
-@dataclass(frozen=True)
-class _Point:
-    """The loop at given unknowns: residuals, their derivatives, and the sizes of their terms."""
-
-    x: Vector
-    residual: Vector
-    jacobian: list[Vector]
-    sizes: Vector
-
-    @property
-    def gap(self) -> float:
-        """The largest residual; infinite where one is not finite."""
-        largest = max(map(abs, self.residual), default=0.0)
-        return largest if all(map(math.isfinite, self.residual)) else math.inf
-
-    @property
-    def rounding(self) -> bool:
-        """Whether the residuals are no more than rounding of their terms."""
-        pairs = zip(self.residual, self.sizes, strict=True)
-        return all(abs(r) <= ROUNDING * size < math.inf for r, size in pairs)
-
-    @property
-    def solved(self) -> bool:
-        """Whether it is a solution."""
-        return self.gap == 0 or (self.rounding and self.gap < math.inf)
-
-    @property
-    def steep(self) -> bool:
-        """Whether a slope is infinite, as that of a root at zero is: nothing is flat there."""
-        return not all(math.isfinite(x) for row in self.jacobian for x in row)
-
-    def step(self, right: Vector) -> Vector | None:
-        """What solves ``jacobian step = right``; None where it is singular."""
-        import numpy as np
-
-        try:
-            found = np.linalg.solve(np.array(self.jacobian), np.array(right))
-        except np.linalg.LinAlgError:
-            return None
-        return [float(x) for x in found] if np.all(np.isfinite(found)) else None
-
-
-def solved(network: Network, known: Callable[[Symbol], float]) -> Vector:
+def solved(network: Network, known: Callable[[Symbol], float]) -> list[float]:
     """The unknowns of a network's algebraic loop.
 
     Args:
@@ -112,122 +30,43 @@ def solved(network: Network, known: Callable[[Symbol], float]) -> Vector:
     Raises:
         ModelError: no solution was found, or there are others beside it.
     """
-    evaluate = _evaluation(network, known)
-    size = len(network.loop)
-    for begin in BEGINS:
-        found = _run(evaluate, [begin] * size, 0.0, 0.0)
-        if found.solved:
-            return _only(evaluate, found)
-    for resistance in RESISTANCES:
-        reached = _followed(evaluate, size, resistance)
-        if reached is not None and reached.solved:
-            return _only(evaluate, reached)
-    raise ModelError("model", "the algebraic loop of its network has no solution here")
+    loop = cast("ModuleAtState", _Loop(network, known))
+    at = reals(loop.size)
+    if not search(loop, at):
+        raise ModelError("model", "the algebraic loop of its network has no solution here")
+    if not is_only(loop, at):
+        raise ModelError("model", "the algebraic loop of its network has several solutions here")
+    return [at[i] for i in range(loop.size)]
 
 
-def _evaluation(network: Network, known: Callable[[Symbol], float]) -> Evaluate:
-    """The loop as a function of its unknowns and of the resistance and the conductance at its laws."""
-    size = len(network.loop)
-    given = {symbol: known(symbol) for symbol in network.loop_needs}
+class _Loop:
+    """What the algorithm asks of a module: the equations of the loop."""
 
-    def known_of(symbol: Symbol) -> float:
-        return given[symbol] if symbol in given else known(symbol)
+    def __init__(self, network: Network, known: Callable[[Symbol], float]) -> None:
+        self.network, self.known = network, known
+        self.size = len(network.loop)
+        self.given = {symbol: known(symbol) for symbol in network.loop_needs}
 
-    def evaluate(x: Vector, series: float, parallel: float) -> _Point:
-        values = {(LOOP, k): value for k, value in enumerate(x)}
-        values |= {(EASE, 0): series, (EASE, 1): parallel}
-        replay = Replay(Floats(), lambda s: values[s] if s in values else known_of(s))
+    def loop_equations(self, r: Reals, K: Reals, s: Reals, *, loop: Reals, ease: Reals) -> None:
+        """Residuals, their Jacobian and sizes of terms; infinite residuals where a law is not defined."""
+        values = {(LOOP, k): loop[k] for k in range(self.size)}
+        values |= {(EASE, k): ease[k] for k in range(2)}
+
+        def value(symbol: Symbol) -> float:
+            if symbol in values:
+                return values[symbol]
+            return self.given[symbol] if symbol in self.given else self.known(symbol)
+
+        replay = Replay(Floats(), value)
+        network = self.network
         try:
-            residual = [float(replay(r)) for r in network.eased]
-            slopes = [[float(replay(e)) for e in row] for row in network.eased_jacobian]
-            sizes = [float(replay(e)) for e in network.loop_sizes]
+            _fill(r, (replay(x) for x in network.eased))
+            _fill(K, (replay(x) for row in network.eased_jacobian for x in row))
+            _fill(s, (replay(x) for x in network.loop_sizes))
         except (ModelError, ArithmeticError):
-            return _Point(x, [math.inf] * size, [], [0.0] * size)
-        return _Point(x, residual, slopes, sizes)
-
-    return evaluate
+            _fill(r, [math.inf] * self.size)
 
 
-def _run(evaluate: Evaluate, x: Vector, series: float, parallel: float) -> _Point:
-    """Newton's method with halved steps, as far as it comes."""
-    at = evaluate(x, series, parallel)
-    eased = series > 0
-    enough = LEVEL_GAP * at.gap if eased else 0.0
-    for _ in range(LEVEL_STEPS if eased else MOST_STEPS):
-        if not enough < at.gap < math.inf:
-            break
-        step = at.step([-r for r in at.residual])
-        found = None if step is None else _nearer(evaluate, at, step, series, parallel)
-        if found is None:
-            break
-        done = at.rounding and not eased and found.gap > at.gap / 2
-        at = found
-        # once it is rounding, go on while that still becomes less
-        if done:
-            break
-    return at
-
-
-def _nearer(
-    evaluate: Evaluate,
-    at: _Point,
-    step: Vector,
-    series: float,
-    parallel: float,
-) -> _Point | None:
-    """The point of a step, halved until the residual falls enough; None if it never does."""
-    length = 1.0
-    for _ in range(MOST_HALVINGS):
-        ahead = [a + length * b for a, b in zip(at.x, step, strict=True)]
-        found = evaluate(ahead, series, parallel)
-        # rows have roundings of their own: the largest residual need not fall where all become rounding
-        if series == 0 and found.solved and not at.solved:
-            return found
-        if not found.steep and found.gap <= (1 - DECREASE * length) * at.gap:
-            return found
-        length /= 2
-    return None
-
-
-def _followed(evaluate: Evaluate, size: int, resistance: float) -> _Point | None:
-    """What is reached as resistances at the laws vanish; None where levels on the way have no solution."""
-    x = [NEAR * (1 + i / 8) for i in range(size)]
-    ease = FIRST
-    for _ in range(NEARER):
-        if evaluate(x, ease * resistance, ease / resistance).gap < math.inf:
-            break
-        x = [value / 10 for value in x]
-    missed = 0
-    for _ in range(LEVELS):
-        start = evaluate(x, ease * resistance, ease / resistance)
-        found = _run(evaluate, x, ease * resistance, ease / resistance)
-        missed = missed + 1 if found.gap > MISSED * start.gap else 0
-        if missed == MOST_MISSED:
-            return None
-        x = found.x
-        ease *= RATIO
-    return _run(evaluate, x, 0.0, 0.0)
-
-
-def _only(evaluate: Evaluate, found: _Point) -> Vector:
-    """A solution, unless there are others beside it.
-
-    Where the Jacobian is singular, as at the zero of ``x abs(x)`` and within a dead zone, the next point in
-    the direction in which the residual changes least tells them apart.
-
-    Raises:
-        ModelError: it is not the only one.
-    """
-    if found.steep or found.step(found.residual) is not None:
-        return found.x
-    eased = evaluate(found.x, PROBE_EASE, PROBE_EASE)
-    flat = eased.step([size if size > 0 else 1.0 for size in found.sizes])
-    if flat is not None:
-        reach = max(abs(p) / (1 + abs(x)) for p, x in zip(flat, found.x, strict=True))
-        for way in (PROBE, -PROBE):
-            beside = [x + way * p / reach for x, p in zip(found.x, flat, strict=True)]
-            if evaluate(beside, 0.0, 0.0).solved:
-                break
-        else:
-            return found.x
-    raise ModelError("model", "the algebraic loop of its network has several solutions here")
+def _fill(array: Reals, entries: Iterable[float]) -> None:
+    for place, entry in enumerate(entries):
+        array[place] = float(entry)

@@ -15,7 +15,7 @@ from support import targets
 from support.targets import CORTEX_M4
 
 import codegen
-from codegen import frames, stack
+from codegen.c import frames, stack
 from linegraph import Model
 from linegraph.emission.emit import module_for
 
@@ -123,9 +123,9 @@ def read_off(body: str, sizes: dict[str, int]) -> int:
     """Bytes of the variables in the text of a function."""
     known = sizes | dict.fromkeys(re.findall(r"\w+_LANES\b", body), 8)
     for entries in re.findall(r"\benum \{([^}]*)\}", body):
-        known |= {
-            x.split("=")[0].strip(): value(x.split("=")[1], known) for x in entries.split(",")
-        }
+        for entry in entries.split(","):
+            name, size = entry.split("=")
+            known[name.strip()] = value(size, known)
     found = 0
     for kind, names in VARIABLES.findall(re.sub(r"\bstatic const [^;]*;", "", body)):
         for name in names.split(", "):
