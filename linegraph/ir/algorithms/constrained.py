@@ -311,27 +311,27 @@ def least_norm(
     not enough where they are nearly parallel.
     """
     C = module.NC
-    null = reals(C * C)
+    kernel = reals(C * C)
     for k in range(m - rank):
         start = k * C
-        null_vector(module, m, rank, k, A, size, rows, columns, null)
+        null_vector(module, m, rank, k, A, size, rows, columns, kernel)
         for _ in range(2):
             for j in range(k):
                 common = 0.0
                 for i in range(m):
-                    common += null[start + i] * null[j * C + i]
+                    common += kernel[start + i] * kernel[j * C + i]
                 for i in range(m):
-                    null[start + i] -= common * null[j * C + i]
+                    kernel[start + i] -= common * kernel[j * C + i]
         length = 0.0
         along = 0.0
         for i in range(m):
-            length += null[start + i] * null[start + i]
+            length += kernel[start + i] * kernel[start + i]
         length = sqrt(length)
         for i in range(m):
-            null[start + i] /= length
-            along += null[start + i] * lam[i]
+            kernel[start + i] /= length
+            along += kernel[start + i] * lam[i]
         for i in range(m):
-            lam[i] -= along * null[start + i]
+            lam[i] -= along * kernel[start + i]
 
 
 def null_vector(
@@ -343,23 +343,23 @@ def null_vector(
     size: Reals,
     rows: Ints,
     columns: Ints,
-    null: Reals,
+    kernel: Reals,
 ) -> None:
-    """Vector k of the null space of J^T, into row k of null: J is A with its rows times their sizes."""
+    """Vector k of the null space of J^T, into row k of kernel: J is A with its rows times their sizes."""
     N = module.NV
     C = module.NC
     start = k * C
     row = rows[rank + k]
     largest = 0.0
     for i in range(m):
-        null[start + i] = 0.0
-    null[start + row] = 1.0
+        kernel[start + i] = 0.0
+    kernel[start + row] = 1.0
     for i in range(rank - 1, -1, -1):
         total = -A[row * N + columns[i]]
         for j in range(i + 1, rank):
-            total -= A[rows[j] * N + columns[i]] * null[start + rows[j]]
-        null[start + rows[i]] = total
+            total -= A[rows[j] * N + columns[i]] * kernel[start + rows[j]]
+        kernel[start + rows[i]] = total
     for i in range(m):
-        largest = larger(largest, abs(ratio(null[start + i], size[i])))
+        largest = larger(largest, abs(ratio(kernel[start + i], size[i])))
     for i in range(m):
-        null[start + i] = ratio(null[start + i], size[i] * largest)
+        kernel[start + i] = ratio(kernel[start + i], size[i] * largest)
