@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from codegen import failures, layout
+from codegen import failures
 from linegraph.ir.binding import Surroundings, bound
-from linegraph.ir.program import Routine
+from linegraph.ir.program import Routine, counts_of
 from linegraph.ir.statement_walks import expressions, nested, operands
 from linegraph.ir.statements import NamedNumber
 
@@ -67,7 +67,7 @@ def of(module: Module) -> Algorithms:
     """
     fails = frozenset(name for name, found in failures.statuses(module).items() if found)
     programs = {program.name: program for program in module.programs}
-    around = Surroundings(programs, layout.counts(module), fails)
+    around = Surroundings(programs, counts_of(module), fails)
     shared: dict[str, Procedure] = {}
     own: dict[str, tuple[Procedure, ...]] = {}
     for program in module.programs:

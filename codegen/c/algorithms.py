@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from codegen import failures, layout
+from codegen import failures
 from codegen.c import declare
 from codegen.c.frames import Definition, StackFrame, statements
 from codegen.c.phrases import CPhrases
 from codegen.phrases import COMPARISON, wrapped
 from linegraph.ir.binding import value
+from linegraph.ir.program import counts_of
 from linegraph.ir.statement_walks import nested
 from linegraph.ir.statements import (
     Array,
@@ -61,7 +62,7 @@ class CAlgorithms:
         self.macro = module.name.upper()
         self.ok = f"{self.macro}_{failures.OK}"
         self.constants = {key: name for key, (name, _) in failures.constants(module).items()}
-        self.counts = layout.counts(module)
+        self.counts = counts_of(module)
 
     def codes(self) -> list[str]:
         """The lines of an enumeration of all numbers with names."""

@@ -120,7 +120,7 @@ def _plain(program: Program, statuses: dict[str, dict[int, str]]) -> bool:
 def _made(module: Module, program: Program, statuses: dict[str, dict[int, str]]) -> Batch:
     macro = module.name.upper()
     given = [
-        Rows(x.name, x.size, layout.extent(module, x.name, x.size, f"{macro}_"))
+        Rows(x.name, x.size, layout.extent(x, f"{macro}_"))
         for x in program.arguments
         if x.size is not None and x.name not in SHARED
     ]
@@ -144,7 +144,7 @@ def _rows(module: Module, result: Result) -> Rows:
     size = 1
     for extent in result.shape:
         size *= extent
-    product = " * ".join(layout.shape(module, result, f"{module.name.upper()}_"))
+    product = " * ".join(layout.shape(result, f"{module.name.upper()}_"))
     return Rows(result.name, size, f"({product})" if " * " in product else product)
 
 
@@ -165,9 +165,9 @@ def _document(module: Module, program: Program | Routine) -> list[str]:
     for argument in program.arguments:
         rows = ""
         if argument.size is not None and argument.name not in SHARED:
-            rows = f" (n x {layout.extent(module, argument.name, argument.size)})"
+            rows = f" (n x {layout.extent(argument)})"
         lines += prose.paragraph(f"@param[in] {argument.name}{rows} {argument.about}", 4)
     for result in program.results:
-        extents = " x ".join(("n", *layout.shape(module, result)))
+        extents = " x ".join(("n", *layout.shape(result)))
         lines += prose.paragraph(f"@param[out] {result.name} ({extents}) {result.about}", 4)
     return declare.block(lines)

@@ -70,7 +70,7 @@ def head(start: str, parts: Sequence[str]) -> str:
 def argument(module: Module, given: Argument, number: str = "double") -> str:
     """A parameter that is read: an array of numbers, the parameters or the time."""
     if given.size is not None:
-        size = layout.extent(module, given.name, given.size, f"{module.name.upper()}_")
+        size = layout.extent(given, f"{module.name.upper()}_")
         return f"const {number} {given.name}[{size if given.size else 1}]"
     if given.name == "p":
         return f"const {module.name}_parameters *p"
@@ -80,5 +80,5 @@ def argument(module: Module, given: Argument, number: str = "double") -> str:
 def result(module: Module, given: Result, number: str = "double") -> str:
     """A parameter that is written; nothing else that the function reads or writes may overlap it."""
     macro = module.name.upper()
-    size = " * ".join(layout.shape(module, given, f"{macro}_"))
+    size = " * ".join(layout.shape(given, f"{macro}_"))
     return f"{number} {given.name}[{macro}_RESTRICT {size if all(given.shape) else 1}]"

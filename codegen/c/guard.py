@@ -100,7 +100,7 @@ def _of_argument(module: Module, given: Argument) -> str:
         return ""
     if given.size is None:
         return f"{module.name}_not_finite(1, &{given.name})"
-    size = layout.extent(module, given.name, given.size, f"{module.name.upper()}_")
+    size = layout.extent(given, f"{module.name.upper()}_")
     return f"{module.name}_not_finite({size}, {given.name})"
 
 
@@ -109,4 +109,4 @@ def _local(result: Result) -> str:
 
 
 def _size(module: Module, result: Result) -> str:
-    return " * ".join(layout.shape(module, result, f"{module.name.upper()}_"))
+    return " * ".join(layout.shape(result, f"{module.name.upper()}_"))

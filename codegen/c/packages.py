@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from codegen import failures, layout, naming, prose, reserved, templates
 from codegen.c import declare
 from linegraph.errors import ModelError, NameRefused
-from linegraph.ir.program import PREPARED_SUFFIX
+from linegraph.ir.program import PREPARED_SUFFIX, counts_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -101,7 +101,7 @@ def _library(
             instead = f"rename it; x_{parameter.name} would do"
             raise NameRefused(f"{what}: Arduino.h has macros of such names; {instead}")
     about = " ".join(declare.comment(text) for text in module.about[:1])
-    constants = [f"{module.name.upper()}_{x}" for x in layout.counts(module)]
+    constants = [f"{module.name.upper()}_{x}" for x in counts_of(module)]
     constants += [name for name, _ in failures.constants(module).values()]
     texts = {
         "library.properties": templates.fill(
@@ -137,14 +137,14 @@ def _example(module: Module, file: str, real: str) -> str:
             declarations.append(f"static {real} {argument.name} = 0;")
             given.append(argument.name)
         else:
-            size = layout.extent(module, argument.name, argument.size, macro)
+            size = layout.extent(argument, macro)
             begin = "{0}" if argument.name != "q" else f"{{{', '.join(_rest(module)) or '0'}}}"
             text = f"static {real} {argument.name}[{size if argument.size else 1}] = {begin};"
             declarations.append(f"{text} // {declare.comment(prose.plain(argument.about))}")
             given.append(argument.name)
     outputs = []
     for result in program.results:
-        size = " * ".join(layout.shape(module, result, macro))
+        size = " * ".join(layout.shape(result, macro))
         size = size if all(result.shape) else "1"
         declarations.append(f"static {real} {result.name}[{size}];")
         outputs.append((result.name, size))

@@ -22,7 +22,7 @@ from codegen.c.declare import block, comment, string
 from codegen.c.frames import Definition
 from codegen.options import DEFAULT
 from codegen.printer import number
-from linegraph.ir.program import Routine
+from linegraph.ir.program import Routine, counts_of, named_listings
 from linegraph.ir.statuses import NOT_FINITE_INPUT
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
         "name": module.name,
         "macro": macro,
         "parameters": [(x.name, number(layout.default(x)), _remark(x)) for x in module.parameters],
-        "names": [_names(macro, listing) for listing in layout.named(module)],
+        "names": [_names(macro, listing) for listing in named_listings(module)],
         "inline": options.trig == "inline",
         "real": options.real,
         "ok": f"{macro}_{failures.OK}",
@@ -82,7 +82,7 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
         head=block(layout.head(module)),
         deepest=_deepest(module, taken, batches),
         report=block(cost_report.table(module, functions, taken)) if options.report else [],
-        counts=list(layout.counts(module).items()),
+        counts=list(counts_of(module).items()),
         functions=[
             (_document(module, x, taken), declare.signature(module, x, statuses))
             for x in module.programs
@@ -129,7 +129,7 @@ def _handed(module: Module, program: Program | Routine, head: str, *, fails: boo
     call = f"{prefix}_{program.handed}({', '.join(['c', *others])});"
     lines += [f"    {prefix}_prepare(p, c);", f"    {'return ' * fails}{call}"]
     frame = frames.StackFrame(
-        doubles=layout.counts(module)["NK"],
+        doubles=counts_of(module)["NK"],
         parameters=len(program.arguments) + len(program.results),
         statements=frames.statements(lines),
         calls={"prepare", program.handed, "parameters_not_finite"},
@@ -202,7 +202,7 @@ def _document(module: Module, program: Program | Routine, taken: Mapping[str, in
     for argument in program.arguments:
         lines += prose.paragraph(f"@param[in] {argument.name} {argument.about}", 4)
     for result in program.results:
-        extents = " x ".join(layout.shape(module, result))
+        extents = " x ".join(layout.shape(result))
         order = ", row-major" if len(result.shape) > 1 else ""
         lines += prose.paragraph(f"@param[out] {result.name} ({extents}{order}) {result.about}", 4)
     ok = f"{module.name.upper()}_{failures.OK}"

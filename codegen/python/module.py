@@ -16,7 +16,7 @@ from codegen.options import DEFAULT
 from codegen.printer import Syntax, number, print_program
 from codegen.python.algorithms import PythonAlgorithms
 from linegraph.ir.functions import ARITY
-from linegraph.ir.program import Program, Routine
+from linegraph.ir.program import Program, Routine, counts_of, named_listings
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -58,10 +58,10 @@ def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
         guarded="_ratio(" in printed,
         larger="_larger(" in printed,
         head=_indented(layout.head(module), 0),
-        counts=list(layout.counts(module).items()),
+        counts=list(counts_of(module).items()),
         names=[
             (listing.symbol, [f"{literal(x.name)}," for x in listing.quantities])
-            for listing in layout.named(module)
+            for listing in named_listings(module)
         ],
         parameters=[x.name for x in module.parameters],
         defaults=[f"{x.name}={number(layout.default(x))}" for x in module.parameters],
@@ -140,11 +140,11 @@ def _document(
     for argument in program.arguments:
         shape = ""
         if argument.size is not None:
-            shape = _leading([layout.extent(module, argument.name, argument.size)])
+            shape = _leading([layout.extent(argument)])
         lines += _item(f"{argument.name}: {argument.about}{shape}")
     lines += ["", "Returns:"]
     for result in program.results:
-        shape = _leading(layout.shape(module, result))
+        shape = _leading(layout.shape(result))
         lines += _item(f"{result.name}: {result.about}{shape}")
     if program.arguments:
         lines += ["", "Raises:", *_item("ValueError: an argument has a wrong shape.")]
@@ -186,7 +186,7 @@ def _read(module: Module, argument: Argument, *, smooth: bool) -> tuple[str, str
     """The name of an argument's leading shape and the line that finds it and the components."""
     name, lead = argument.name, f"{argument.name}_lead"
     if argument.size is not None:
-        size = layout.extent(module, name, argument.size)
+        size = layout.extent(argument)
         kept = ", smooth=True" * smooth
         return lead, f'    {lead}, {name} = _split("{name}", {name}, {size}{kept})'
     if name == "p":
@@ -195,7 +195,7 @@ def _read(module: Module, argument: Argument, *, smooth: bool) -> tuple[str, str
 
 
 def _join(module: Module, result: Result) -> str:
-    extents = layout.shape(module, result)
+    extents = layout.shape(result)
     return f"_join({result.name}, lead, ({', '.join(extents)}{',' * (len(extents) == 1)}))"
 
 

@@ -16,7 +16,7 @@ from linegraph.ir.prologue import COUNT, with_prologue
 from linegraph.ir.sums import with_sums_collected
 from linegraph.kinematics.arms import arms, coordinate_rates
 from linegraph.programs import derivatives as derivative_programs
-from linegraph.programs import division, pivots
+from linegraph.programs import division, extents, pivots
 from linegraph.programs import edges as edge_programs
 from linegraph.programs import identification as parameter_programs
 from linegraph.programs import kinematics as kinematic_programs
@@ -78,7 +78,7 @@ def module_of(
     tree = functions.tree
     closed = closed_programs.listings(functions) if tree.closed else ()
     whole = (network_programs.state_listing(tree),) if "rhs" in chosen else ()
-    return Module(
+    module = Module(
         name=name,
         about=(
             *about,
@@ -107,6 +107,7 @@ def module_of(
         ),
         omitted=omitted,
     )
+    return extents.named(module)
 
 
 def _require_made(derivation: Derived, keys: Iterable[str], made: Mapping[str, Made]) -> None:

@@ -18,6 +18,7 @@ import codegen
 from codegen.c import frames, stack
 from linegraph import Model
 from linegraph.emission.emit import module_for
+from linegraph.ir.program import counts_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -154,7 +155,7 @@ def test_records_say_what_the_text_does(
     )
     module, way = targets.module(of), codegen.Options(**options)
     source = COMMENT.sub("", codegen.render(module, "c", way)["model.c"])
-    sizes = {f"MODEL_{x}": size for x, size in codegen.layout.counts(module).items()}
+    sizes = {f"MODEL_{x}": size for x, size in counts_of(module).items()}
     functions = {x: (head, body) for x, head, body in FUNCTION.findall(source)}
     assert len(functions) > len(module.programs)
     for function, (head, body) in functions.items():

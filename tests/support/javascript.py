@@ -9,13 +9,13 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from codegen import algorithms, golden, layout
+from codegen import algorithms, golden
 from codegen.language import Language
 from codegen.phrases import ATOM, CHOICE, NOT, Phrases
 from codegen.printer import Syntax, number, print_program
 from linegraph.ir import statements as ir
 from linegraph.ir.functions import ARITY
-from linegraph.ir.program import Routine
+from linegraph.ir.program import Routine, counts_of
 from linegraph.ir.rounding import DOUBLE
 
 if TYPE_CHECKING:
@@ -191,7 +191,7 @@ def render(module: Module, options: object) -> dict[str, str]:
     """The file of a module."""
     found = algorithms.of(module)
     names = [x.name for x in module.programs]
-    lines = [f"const counts = {json.dumps(layout.counts(module))};"]
+    lines = [f"const counts = {json.dumps(counts_of(module))};"]
     lines += [f"const {x.name} = {x.value};" for x in found.codes()]
     lines += [line for x in found.shared for line in procedure(JavaScript(), x)]
     lines += [line for x in module.programs for line in function(module, x, found)]

@@ -134,17 +134,10 @@ def equations_beside(
     gam: Reals,
     rates: Reals,
 ) -> None:
-    """The equations at a state beside; what stabilises constraints stays that of the given state.
+    """The equations at a state (q_on, v_on) beside; gam is that of the given state, and then of this one.
 
-    Args:
-        module: at the given state.
-        q_on: positions of the other state.
-        v_on: velocities of the other state.
-        M: becomes the mass matrix there.
-        f: becomes Q - h there.
-        J: becomes the Jacobian there.
-        gam: of the given state, becomes that of the other one.
-        rates: work space.
+    What stabilises constraints stays that of the given state. M, f and J are outputs, rates are work
+    space.
     """
     NC = module.NC
     stabilising = reals(NC)

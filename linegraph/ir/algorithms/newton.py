@@ -79,24 +79,9 @@ def search(module: ModuleAtState, at: Reals) -> bool:
 
 def follow(module: ModuleAtState, resistance: float, at: Reals) -> bool:
     """Follow the solution while resistances vanish level by level; whether that ends at one."""
-    N = module.size
-    r = reals(N)
-    K = reals(N * N)
-    s = reals(N)
-    ease = reals(2)
     soft = FIRST
     missed = 0
-    for i in range(N):
-        at[i] = NEAR * (1.0 + 0.125 * float(i))
-    ease[0] = soft * resistance
-    ease[1] = soft / resistance
-    for _ in range(NEARER):
-        module.loop_equations(r, K, s, loop=at, ease=ease)
-        if size_of(N, r) < infinity:
-            break
-        # nearer to zero where exponentials overflow
-        for i in range(N):
-            at[i] *= 0.1
+    begin_near(module, soft * resistance, soft / resistance, at)
     for _ in range(LEVELS):
         if descend(module, soft * resistance, soft / resistance, at):
             missed = 0
@@ -106,6 +91,25 @@ def follow(module: ModuleAtState, resistance: float, at: Reals) -> bool:
             return False
         soft *= SOFTER
     return descend(module, 0.0, 0.0, at)
+
+
+def begin_near(module: ModuleAtState, series: float, parallel: float, at: Reals) -> None:
+    """A place near zero where the residual is finite: nearer if exponentials overflow."""
+    N = module.size
+    r = reals(N)
+    K = reals(N * N)
+    s = reals(N)
+    ease = reals(2)
+    ease[0] = series
+    ease[1] = parallel
+    for i in range(N):
+        at[i] = NEAR * (1.0 + 0.125 * float(i))
+    for _ in range(NEARER):
+        module.loop_equations(r, K, s, loop=at, ease=ease)
+        if size_of(N, r) < infinity:
+            break
+        for i in range(N):
+            at[i] *= 0.1
 
 
 def descend(module: ModuleAtState, series: float, parallel: float, at: Reals) -> bool:
