@@ -1,47 +1,26 @@
 """Stage 6: files from a `Module`.
 
-One language is one file here (what its lines look like), one folder of templates (the shape of its
-files) and one line in the register below. Nothing here knows a body or a joint.
+A language is a package here (what its lines look like), a folder of templates (the shape of its files) and
+a line in the register below. Nothing here knows a body or a joint.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from codegen import c, golden, naming, options, python
+from codegen import c, naming, python
+from codegen.language import Language
 from codegen.options import DEFAULT, REAL, TRIG, Options, options_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
     from linegraph.ir.golden_vectors import Vectors
     from linegraph.ir.program import Module
 
-    Render = Callable[[Module, Options], Mapping[str, str]]
-    RenderTests = Callable[[Module, Vectors, Options], Mapping[str, str]]
-
-
-@dataclass(frozen=True)
-class Language:
-    """A language that modules are written in.
-
-    Attributes:
-        render: the files of a module: file name -> text.
-        tests: the program that checks these files against golden vectors; None where there is none.
-        options: the names of the `Options` that concern it.
-    """
-
-    render: Render
-    tests: RenderTests | None = None
-    options: frozenset[str] = frozenset()
-
-
-_REGISTER: dict[str, Language | Render] = {
-    "c": Language(c.render, golden.in_c, options.NAMES),
-    "python": Language(python.render, golden.in_python),
+_REGISTER: dict[str, Language] = {
+    "c": c.LANGUAGE,
+    "python": python.LANGUAGE,
 }
-"""All languages by name; one without golden vectors and options may be its `render` alone."""
+"""All languages by name."""
 
 __all__ = [
     "LANGUAGES",
@@ -62,8 +41,7 @@ LANGUAGES = tuple(_REGISTER)
 
 def known(name: str) -> Language:
     """One of `LANGUAGES`."""
-    found = _REGISTER[name]
-    return found if isinstance(found, Language) else Language(found)
+    return _REGISTER[name]
 
 
 def render(module: Module, language: str, options: Options = DEFAULT) -> dict[str, str]:

@@ -5,63 +5,22 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from codegen import prose
-from linegraph.ir.program import Listing
+from linegraph.ir.program import Listing, named_listings
 
 if TYPE_CHECKING:
-    from linegraph.ir.program import Module, Quantity, Result
-
-_SIZES = {
-    **dict.fromkeys(("q", "qdot", "q_on"), ("NQ",)),
-    **dict.fromkeys(("v", "a", "tau", "h", "f", "rest", "v_on"), ("NV",)),
-    "c": ("NK",),
-    "M": ("NV", "NV"),
-    "u": ("NU",),
-    "phi": ("NP",),
-    "J": ("NC", "NV"),
-    "Y": ("NV", "NPI"),
-    "T": ("NV", "NI"),
-    "Mr": ("NI", "NI"),
-    **dict.fromkeys(("dtau_dq", "da_dq"), ("NV", "NT")),
-    **dict.fromkeys(("dtau_dv", "dtau_da", "da_dv"), ("NV", "NV")),
-    "da_du": ("NV", "NU"),
-    "A": ("NDX", "NDX"),
-    "B": ("NDX", "NU"),
-    **dict.fromkeys(("hr", "s", "w"), ("NI",)),
-}
-"""The counts a reader expects as an array's extents; all others are plain numbers."""
+    from linegraph.ir.program import Argument, Module, Quantity, Result
 
 
-def counts(module: Module) -> dict[str, int]:
-    """How many positions, velocities, inputs and the like there are, by the names all languages give them."""
-    return {x.count: len(x.quantities) for x in named(module)} | dict(module.counts)
+def extent(argument: Argument, prefix: str = "") -> str:
+    """The size of an array that is read, as a reader expects it: ``prefix + NV`` rather than ``7``."""
+    return f"{prefix}{argument.count}" if argument.count else str(argument.size)
 
 
-def extent(module: Module, name: str, size: int, prefix: str = "", axis: int = 0) -> str:
-    """The size of the array `name` as a reader expects it: ``prefix + NV`` rather than ``7``."""
-    expected = _SIZES.get(name, ())
-    listed = {result: x.count for x in module.listings for result in x.sizes}
-    count = expected[axis] if axis < len(expected) else listed.get(name, "")
-    return f"{prefix}{count}" if counts(module).get(count) == size else str(size)
-
-
-def shape(module: Module, result: Result, prefix: str = "") -> list[str]:
-    """The extents of a result, each as `extent` says it, or by the counts that the result itself names."""
-    if result.counts:
-        pairs = zip(result.counts, result.shape, strict=True)
-        return [f"{prefix}{count}" if count else str(size) for count, size in pairs]
-    return [
-        extent(module, result.name, size, prefix, axis) for axis, size in enumerate(result.shape)
-    ]
-
-
-def named(module: Module) -> tuple[Listing, ...]:
-    """What has a count and an array of names."""
-    return (
-        Listing("q", "NQ", "positions", module.positions),
-        Listing("v", "NV", "velocities", module.velocities),
-        Listing("u", "NU", "inputs", module.inputs),
-        *module.listings,
-    )
+def shape(result: Result, prefix: str = "") -> list[str]:
+    """The extents of a result, in the same way."""
+    names = result.counts or ("",) * len(result.shape)
+    pairs = zip(names, result.shape, strict=True)
+    return [f"{prefix}{name}" if name else str(size) for name, size in pairs]
 
 
 def head(module: Module) -> list[str]:
@@ -69,7 +28,7 @@ def head(module: Module) -> list[str]:
     lines: list[str] = []
     for text in module.about:
         lines += [*prose.paragraph(text), ""]
-    for listing in (*named(module), Listing("p", "", "parameters", module.parameters)):
+    for listing in (*named_listings(module), Listing("p", "", "parameters", module.parameters)):
         if listing.quantities and listing.shown:
             value = "value, " if listing.symbol == "p" else ""
             symbol = listing.sizes[0] if listing.sizes else listing.symbol

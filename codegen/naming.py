@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from codegen import layout, reserved
+from codegen import reserved
 from linegraph.errors import NameRefused
+from linegraph.ir.program import counts_of, named_listings
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -82,7 +83,7 @@ def validate(module: Module) -> None:
     _accept("model", module.name)
     if module.name.endswith("_"):
         raise _refused("model", module.name, "functions' names would have two underscores in a row")
-    macros = {f"{module.name.upper()}_{end}" for end in (*layout.counts(module), *reserved.HEADS)}
+    macros = {f"{module.name.upper()}_{end}" for end in (*counts_of(module), *reserved.HEADS)}
     for parameter in module.parameters:
         _accept("parameter", parameter.name)
         if parameter.name in macros:
@@ -93,7 +94,7 @@ def validate(module: Module) -> None:
     _distinct("function", (program.name for program in module.programs))
     for program in module.programs:
         _validate_program(program)
-    for quantity in (x for listing in layout.named(module) for x in listing.quantities):
+    for quantity in (x for listing in named_listings(module) for x in listing.quantities):
         if len(quantity.name) > LONGEST_TEXT:
             size = f"it has {len(quantity.name)} characters, more than {LONGEST_TEXT}"
             raise NameRefused(

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
-from codegen import real
 from linegraph.errors import ModelError
 
 if TYPE_CHECKING:
@@ -14,7 +13,7 @@ if TYPE_CHECKING:
 TRIG = ("libm", "inline")
 """Whose sine and cosine C calls: the library's, or those of the emitted file itself."""
 
-REAL = real.NAMES
+REAL = ("double", "float")
 """The type of C's numbers."""
 
 

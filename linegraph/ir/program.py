@@ -34,11 +34,16 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Argument:
-    """What a function is given: an array of `size` numbers, ``p`` (the parameters) or ``t`` (a number)."""
+    """What a function is given: an array of `size` numbers, ``p`` (the parameters) or ``t`` (a number).
+
+    Attributes:
+        count: the name of the count that `size` is, ``NV`` say, or nothing.
+    """
 
     name: str
     size: int | None
     about: str
+    count: str = ""
 
 
 @dataclass(frozen=True)
@@ -46,8 +51,8 @@ class Result:
     """What a function returns: a dense array, its `entries` row-major.
 
     Attributes:
-        counts: for each extent the count it is called by, ``NV`` say, or nothing; none where the name of the
-            result says it.
+        counts: for each extent the name of the count that it is, ``NV`` say, or nothing; none if all are
+            plain numbers.
     """
 
     name: str
@@ -207,6 +212,21 @@ class Module:
     def __repr__(self) -> str:
         """Its name and functions."""
         return f"<module {self.name}: {', '.join(program.name for program in self.programs)}>"
+
+
+def named_listings(module: Module) -> tuple[Listing, ...]:
+    """What has a count and an array of names."""
+    return (
+        Listing("q", "NQ", "positions", module.positions),
+        Listing("v", "NV", "velocities", module.velocities),
+        Listing("u", "NU", "inputs", module.inputs),
+        *module.listings,
+    )
+
+
+def counts_of(module: Module) -> dict[str, int]:
+    """How many positions, velocities, inputs and the like there are, by the names all languages give them."""
+    return {x.count: len(x.quantities) for x in named_listings(module)} | dict(module.counts)
 
 
 class Guards(NamedTuple):

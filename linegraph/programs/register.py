@@ -14,7 +14,7 @@ from linegraph.ir.program import Argument, Call, Guards, Module, Program, Quanti
 from linegraph.ir.prologue import COUNT, with_prologue
 from linegraph.ir.sums import with_sums_collected
 from linegraph.programs import derivatives as derivative_programs
-from linegraph.programs import division, loop_routines, pivots
+from linegraph.programs import division, extents, loop_routines, pivots
 from linegraph.programs import edges as edge_programs
 from linegraph.programs import identification as parameter_programs
 from linegraph.programs import kinematics as kinematic_programs
@@ -69,7 +69,7 @@ def module_of(
     hoisted = request.prologue and "p" in functions.head
     programs, constants = with_prologue(programs) if hoisted else (with_sums_collected(programs), 0)
     tree = functions.tree
-    return Module(
+    module = Module(
         name=name,
         about=(
             *about,
@@ -89,6 +89,7 @@ def module_of(
         ),
         omitted=omitted,
     )
+    return extents.named(module)
 
 
 def _require_made(derivation: Derived, keys: Iterable[str], made: Mapping[str, Made]) -> None:

@@ -14,7 +14,7 @@ from support import codegen_samples as samples
 from support.compiled import COMPILERS, WARNINGS, Compiled, Failed, available
 
 import codegen
-from codegen import c
+from codegen.c import source as c
 from linegraph.ir.dag import Dag
 from linegraph.ir.program import Argument, Call, Check, Guards, Module, Quantity, Result, assemble
 from linegraph.ir.statuses import NOT_FINITE_INPUT

@@ -17,7 +17,7 @@ from support import codegen_samples as samples
 from support.emitted import load
 
 import codegen
-from codegen import python
+from codegen.python import module as python
 from linegraph.ir.program import Quantity
 
 if TYPE_CHECKING:

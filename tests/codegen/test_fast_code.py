@@ -16,7 +16,8 @@ from support.compiled import COMPILERS, Array, Compiled, Failed, available, has_
 from support.emitted import load
 
 import codegen
-from codegen import Options, parts
+from codegen import Options
+from codegen.c import parts
 from linegraph.cli.main import main
 from linegraph.emission.emit import module_for
 from linegraph.ir.dag import Dag
@@ -242,7 +243,7 @@ def test_a_cut_is_made_where_few_values_are_alive() -> None:
     made = samples.large_module(8000)
     program = next(x for x in made.programs if x.name == "equations")
     assert isinstance(program, Program)
-    from codegen.order import arranged
+    from codegen.c.order import arranged
 
     items = arranged(program, ())
     found = parts.cut(items)
@@ -288,7 +289,7 @@ def test_many_states_are_as_one_by_one(
     if name == "rough":
         monkeypatch.setattr(parts, "SIZE", 5)
     made = module(name, tmp_path)
-    keep = tuple(x for x in made.programs if x.name in codegen.batch.NAMES)
+    keep = tuple(x for x in made.programs if x.name in codegen.c.batch.NAMES)
     made = Module(**{**vars(made), "programs": keep})
     flags = [f"-D{name.upper()}_LANES={x}" for x in lanes] or ["-march=native"]
     files = codegen.render(made, "c", WAYS["both"])

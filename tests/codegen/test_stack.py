@@ -15,9 +15,10 @@ from support import targets
 from support.targets import CORTEX_M4
 
 import codegen
-from codegen import frames, stack
+from codegen.c import frames, stack
 from linegraph import Model
 from linegraph.emission.emit import module_for
+from linegraph.ir.program import counts_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -124,9 +125,9 @@ def read_off(body: str, sizes: dict[str, int]) -> int:
     """Bytes of the variables in the text of a function."""
     known = sizes | dict.fromkeys(re.findall(r"\w+_LANES\b", body), 8)
     for entries in re.findall(r"\benum \{([^}]*)\}", body):
-        known |= {
-            x.split("=")[0].strip(): value(x.split("=")[1], known) for x in entries.split(",")
-        }
+        for entry in entries.split(","):
+            name, size = entry.split("=")
+            known[name.strip()] = value(size, known)
     found = 0
     for kind, names in VARIABLES.findall(re.sub(r"\bstatic const [^;]*;", "", body)):
         for name in names.split(", "):
@@ -155,7 +156,7 @@ def test_records_say_what_the_text_does(
     )
     module, way = targets.module(of), codegen.Options(**options)
     source = COMMENT.sub("", codegen.render(module, "c", way)["model.c"])
-    sizes = {f"MODEL_{x}": size for x, size in codegen.layout.counts(module).items()}
+    sizes = {f"MODEL_{x}": size for x, size in counts_of(module).items()}
     functions = {x: (head, body) for x, head, body in FUNCTION.findall(source)}
     assert len(functions) > len(module.programs)
     for function, (head, body) in functions.items():

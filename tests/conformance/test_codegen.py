@@ -72,7 +72,7 @@ def test_every_language_has_its_file_its_templates_and_its_way_to_run() -> None:
     assert set(RUN) == set(codegen.LANGUAGES), "RUN says how to run each language"
     assert codegen.LANGUAGES[:2] == ("c", "python")
     for language in codegen.LANGUAGES:
-        assert (ROOT / "codegen" / f"{language}.py").is_file()
+        assert (ROOT / "codegen" / language / "__init__.py").is_file()
         assert list((templates.folder() / language).glob("*.jinja"))
 
 

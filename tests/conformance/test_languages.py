@@ -1,4 +1,4 @@
-"""A language is named in one place: its file, its templates and one line make it one of all languages."""
+"""A language is named in one place: its package, its templates and one line make it one of all languages."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ ROOT = Path(__file__).parents[2]
 TOY = '''"""A toy: what each function takes and gives, one line each."""
 
 from codegen import layout, templates
-from codegen.routines import Dialect
+from codegen.algorithms import of
+from codegen.language import Language
 
 
 def render(module, options):
@@ -27,6 +28,9 @@ def render(module, options):
     ]
     text = templates.fill("toy/module.toy.jinja", name=module.name, functions=functions)
     return {f"{module.name}.toy": text}
+
+
+LANGUAGE = Language(render)
 '''
 TEMPLATE = """module {{ name }}
 {% for function, given, found in functions %}
@@ -48,13 +52,14 @@ def toy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("toy")
     for part in ("codegen", "templates"):
         shutil.copytree(ROOT / part, folder / part, ignore=shutil.ignore_patterns("__pycache__"))
-    (folder / "codegen" / "toy.py").write_text(TOY)
+    (folder / "codegen" / "toy").mkdir()
+    (folder / "codegen" / "toy" / "__init__.py").write_text(TOY)
     (folder / "templates" / "toy").mkdir()
     (folder / "templates" / "toy" / "module.toy.jinja").write_text(TEMPLATE)
     register = folder / "codegen" / "__init__.py"
     lines = register.read_text().splitlines(keepends=True)
     place = next(k for k, line in enumerate(lines) if line.startswith("_REGISTER")) + 1
-    lines.insert(place, '    "toy": __import__("codegen.toy", fromlist=["render"]).render,\n')
+    lines.insert(place, '    "toy": __import__("codegen.toy", fromlist=["LANGUAGE"]).LANGUAGE,\n')
     register.write_text("".join(lines))
     (folder / "slide.toml").write_text(MODEL)
     return folder
@@ -100,11 +105,12 @@ def test_options_of_c_are_not_its_own(toy: Path) -> None:
     assert not list((toy / "library").rglob("*.toy"))
 
 
-def test_a_function_in_the_register_is_a_language(
+def test_a_language_without_golden_vectors_says_so(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     known = {language: codegen._REGISTER[language] for language in ("c", "python")}
-    made = {**known, "text": lambda module, options: {f"{module.name}.txt": "text\n"}}
+    text = codegen.Language(lambda module, options: {f"{module.name}.txt": "text\n"})
+    made = {**known, "text": text}
     monkeypatch.setattr(codegen, "_REGISTER", made)
     monkeypatch.setattr(codegen, "LANGUAGES", tuple(made))
     model = lg.Model("p")

@@ -17,7 +17,8 @@ from support import targets
 from support.compiled import Compiled
 
 import codegen
-from codegen import Options, real
+from codegen import Options
+from codegen.c import real
 from linegraph import Model
 from linegraph.cli.main import main
 from linegraph.emission.emit import emit, module_for, render
@@ -141,7 +142,7 @@ def test_nothing_but_floats_is_written(name: str) -> None:
 @pytest.mark.parametrize("name", CHECKED)
 def test_doubles_and_floats_differ_in_nothing_else(name: str) -> None:
     """Every word but types, functions, numbers and tolerances is the same."""
-    said = [bare(emitted(name, x)["model.c"]) for x in real.NAMES]
+    said = [bare(emitted(name, x)["model.c"]) for x in codegen.REAL]
     # floats want C99, doubles do not: the check of that is their own
     said = [re.sub(r"#if [^\n]*\n#error[^\n]*\n#endif\n", "", text) for text in said]
     said = [re.sub(r"\n+", "\n", text) for text in said]
@@ -223,7 +224,9 @@ def test_statuses_are_returned_by_name(name: str) -> None:
     assert not re.search(r"return \d", outside)
     enumerated = dict(re.findall(r"^    (MODEL_\w+) = (\d+)", files["model.h"], re.MULTILINE))
     assert enumerated["MODEL_OK"] == "0"
-    returned = set(re.findall(r"\b(?:return|status =) (MODEL_\w+);", outside))
+    private = set(re.findall(r"^    (MODEL_\w+) = \d", code, re.MULTILINE))
+    assert not private & set(enumerated)
+    returned = set(re.findall(r"\b(?:return|status =) (MODEL_\w+);", code)) - private
     assert returned <= set(enumerated)
     assert set(enumerated) - returned == set()
     for constant, number in enumerated.items():

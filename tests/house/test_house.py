@@ -212,7 +212,10 @@ def test_functions_take_few_parameters() -> None:
         f"{name}.{function.name}"
         for name, path in files().items()
         for function in functions(path)
-        if parameters(function) > MOST_PARAMETERS and not of_click(function)
+        if parameters(function) > MOST_PARAMETERS
+        and not of_click(function)
+        # arrays are passed one by one there, since not all languages have records of them
+        and not name.startswith("linegraph.ir.algorithms.")
     }
     assert many == set()
 

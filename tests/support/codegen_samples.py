@@ -28,9 +28,9 @@ Values = dict[str, Any]
 
 P = Argument("p", None, "the parameters")
 T = Argument("t", None, "time in s")
-Q = Argument("q", 2, "positions")
-V = Argument("v", 2, "velocities")
-U = Argument("u", 2, "inputs")
+Q = Argument("q", 2, "positions", "NQ")
+V = Argument("v", 2, "velocities", "NV")
+U = Argument("u", 2, "inputs", "NU")
 
 SINGULAR = "the mass matrix is singular"
 
@@ -102,7 +102,7 @@ def solve(calls: str, arguments: tuple[Argument, ...]) -> Program:
         "forward_dynamics",
         "Accelerations: solve M a = Q - h.",
         (*arguments, U),
-        (Result("a", (2,), (first, second), "the accelerations"),),
+        (Result("a", (2,), (first, second), "the accelerations", ("NV",)),),
         Guards(
             (Check(a, 0, 1, SINGULAR), Check(pivot, 1e-12 * c, 1, SINGULAR)),
             (
@@ -128,8 +128,8 @@ def arm() -> Module:
     weight = 9.81 * m * dag.sin(t)
     apart = q[0] - q[1]
     bias = (weight * v[0] - v[1] * (q[1] - q[0]), -(weight * v[0] + -3 * v[1]))
-    M = Result("M", (2, 2), mass, "the mass matrix")
-    h = Result("h", (2,), bias, "the bias")
+    M = Result("M", (2, 2), mass, "the mass matrix", ("NV", "NV"))
+    h = Result("h", (2,), bias, "the bias", ("NV",))
     E = Result("E", (2,), (dag.sqrt(1 + apart * apart), 0), "kinetic and potential energy")
     listed = coordinates(2)
     return Module(

@@ -24,9 +24,9 @@ from systems import random_mixed, random_networks, random_trees
 
 import codegen
 import codegen.layout
-import codegen.real
 from linegraph import ModelError
 from linegraph.emission.emit import module_for
+from linegraph.ir import rounding
 from linegraph.programs.register import OF_FRAMES, ON_REQUEST
 from linegraph.readers import modelfile, urdf
 
@@ -434,7 +434,7 @@ def misfits(of: Module, states: int, double: str, real: str) -> list[str]:
     return found
 
 
-GAP = float(codegen.real.TOLERANCES["float"]["closed"])
+GAP = rounding.FLOAT.closed
 SOLVING = re.compile(
     "forward_dynamics|linearize|.*_operational_|rhs|reactions$|drives|power|outputs"
 )
