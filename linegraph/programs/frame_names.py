@@ -1,4 +1,4 @@
-"""Frames that are asked for by name, and what they are called in the names of emitted functions."""
+"""Requested frames, and their identifiers in the names of emitted functions."""
 
 from __future__ import annotations
 
@@ -12,17 +12,21 @@ if TYPE_CHECKING:
     from linegraph.model.system import System
 
 
-def named_frames(model: System, frames: Iterable[str]) -> tuple[NamedFrame, ...]:
-    """Bodies and ``body.frame`` with their identifiers.
+def named_frames(system: System, frames: Iterable[str]) -> tuple[NamedFrame, ...]:
+    """Bodies and ``body.frame`` with their identifiers, each once.
+
+    Args:
+        system: has the bodies and frames.
+        frames: names as in the model; a single name is allowed.
 
     Raises:
         ModelError: there is no such frame.
-        NameRefused: two are called alike.
+        NameRefused: two frames get the same identifier.
     """
     from codegen import naming
 
     names = list(dict.fromkeys((frames,) if isinstance(frames, str) else frames))
     for name in names:
-        require_frame(model, name)
+        require_frame(system, name)
     called = naming.identifiers(names, "frame", naming.stem)
     return tuple(NamedFrame(*pair) for pair in zip(called, names, strict=True))
