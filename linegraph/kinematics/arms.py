@@ -1,4 +1,4 @@
-"""The joints of a tree at a state: each link's motion relative to its parent."""
+"""The joints of a tree at a state: each link's motion relative to its parent, near side to far side."""
 
 from __future__ import annotations
 
@@ -22,19 +22,20 @@ if TYPE_CHECKING:
 
 
 class Arm(NamedTuple):
-    """A link's joint at a state, as the walk crosses it: near side to far side.
+    """A link's joint at a state, in the direction of the walk: from the near link to the far one.
 
     Attributes:
-        rotation: the link's working components to its parent's.
-        at: the link's origin in its parent's working frame.
-        motion: the joint's motion, turned round where its edge points to ground.
-        rates: the joint's velocity coordinates.
-        prescribed: their derivatives where the motion is prescribed; none where it is free.
-        level: whether the link turns against ground and not against its parent: in rotation its inertia
-            edge is the branch.
-        moments: the link's mass distribution about its origin, in working axes.
-        turn: of a link whose working axes are still, its own axes to those.
-        angle: of that turn about z.
+        rotation: from the link's working axes to its parent's.
+        at: the link's origin, from its parent's origin and in the parent's working axes (m).
+        motion: the joint's motion, reversed if its edge points towards ground; in the link's working
+            axes.
+        rates: the joint's own velocities (rad/s, m/s).
+        prescribed: their derivatives if the motion is prescribed (rad/s², m/s²); empty if it is free.
+        level: whether the link's orientation is measured from ground: in the rotational projection its
+            inertia edge is the branch, not the joint.
+        moments: the link's mass distribution about its origin, in its working axes.
+        turn: for a link whose working axes stay still, the rotation from its own axes to those.
+        angle: the angle of this rotation about z (rad).
     """
 
     rotation: Rotation
@@ -49,7 +50,16 @@ class Arm(NamedTuple):
 
 
 def arms(tree: KinematicTree, q: Iterable[Scalar], v: Iterable[Scalar]) -> list[Arm]:
-    """Every joint's motion at (q, v)."""
+    """The motion of every joint at (q, v): the connecting equations of the tree.
+
+    Args:
+        tree: the links.
+        q: the coordinates, one per `tree.positions` (rad, m; unit quaternions x, y, z, w).
+        v: the velocities, one per `tree.velocities` (rad/s, m/s).
+
+    Returns:
+        One arm per link, parents first.
+    """
     algebra, q, v = tree.algebra, tuple(q), tuple(v)
     found: list[Arm] = []
     for link in tree.links:
@@ -76,10 +86,11 @@ def arms(tree: KinematicTree, q: Iterable[Scalar], v: Iterable[Scalar]) -> list[
 
 
 def _in_a_run(algebra: Algebra, link: Link, arm: Arm, found: Sequence[Arm], angle: Scalar) -> Arm:
-    """A link in a run of parallel axes: its angle is measured from the first one's near side.
+    """A link in a run of parallel axes: its angle is measured from the near side of the first one.
 
-    With L the constant rotation to the joint, which keeps z or turns it round,
-    ``Rz(a) L Rz(b) = L Rz(b + a)`` or ``L Rz(b - a)``.
+    With L the constant rotation to the joint, which keeps z or reverses it, ``Rz(a) L Rz(b) = L Rz(b +
+    a)`` or ``L Rz(b - a)``. One sine and cosine of a sum of angles replace the product of two
+    rotations.
     """
     rotation = link.rotation
     if link.parent >= 0 and found[link.parent].turn.factors:
@@ -97,7 +108,7 @@ def _in_a_run(algebra: Algebra, link: Link, arm: Arm, found: Sequence[Arm], angl
 def _against_parent(
     tree: KinematicTree, found: list[Arm], link: Link, absolute: Rotation
 ) -> Rotation:
-    """The rotation to the parent's axes of a link whose rotation to ground axes is given."""
+    """Rotation of a link to its parent's axes, if its rotation to ground axes is given."""
     outward: list[Rotation] = []
     i = link.parent
     while i >= 0:
@@ -113,7 +124,18 @@ def _against_parent(
 
 
 def coordinate_rates(tree: KinematicTree, q: Iterable[Scalar], v: Iterable[Scalar]) -> list[Scalar]:
-    """``q̇ = N(q) v``."""
+    """Rates of the coordinates, ``q̇ = N(q) v``.
+
+    N is the identity except for quaternions and for Euler angles, whose v is an angular velocity.
+
+    Args:
+        tree: the links.
+        q: the coordinates.
+        v: the velocities.
+
+    Returns:
+        One rate per entry of q (rad/s, m/s, 1/s for quaternions).
+    """
     algebra, q, v = tree.algebra, tuple(q), tuple(v)
     rates: list[Scalar] = [0] * len(tree.positions)
     for link in tree.links:

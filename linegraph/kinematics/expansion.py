@@ -1,7 +1,7 @@
-"""Joints of several axes as joints of one axis each, with massless links in between.
+"""Joints of several axes replaced by joints of one axis each, with massless links in between.
 
-The motion stays the same, but each axis can have its own working frame, and moments that only a turn about
-the last axis makes felt are handed on beyond it.
+The motion stays the same. Each axis gets a working frame of its own, and moments that only a turn about
+the last axis would notice can be passed on to the links before it.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 
 
 class Expanded(NamedTuple):
-    """A tree of more links.
+    """A tree whose joints of several axes have been taken apart.
 
     Attributes:
-        tree: the links; what it says of bodies and ends holds for the links before.
-        last: for each link before, the one that has its bodies.
-        turns: the working axes of that one in those of the link before.
+        tree: the longer tree; its `bodies` and `ends` still refer to the links of the original one.
+        last: for each original link, the index of the new link that has its bodies.
+        turns: for each original link, the working axes of the new link in those of the original.
     """
 
     tree: KinematicTree
@@ -37,7 +37,7 @@ class Expanded(NamedTuple):
 
 
 def expanded(tree: KinematicTree) -> Expanded:
-    """Every joint that has parts taken apart, where it is made of numbers."""
+    """Take apart every joint that consists of parts whose axes are numbers."""
     links: list[Link] = []
     last: list[int] = []
     turns: list[Rotation] = []
@@ -61,9 +61,10 @@ def expanded(tree: KinematicTree) -> Expanded:
 
 
 def _parts(link: Link) -> tuple[tuple[Joint, Rotation], ...]:
-    """A joint's parts, where they are better by themselves: with axes of numbers that are cheap to get to.
+    """The parts of a joint with their axes; none if taking them apart would cost operations.
 
-    A hinge turns anyway; what else is about an oblique axis would have to be turned to it and back.
+    An oblique axis of anything but a hinge would need a rotation to it and one back. A hinge contains a
+    rotation in any case, so it may have any constant axis.
     """
     parts = () if link.place.level else link.joint.sequence()
     apart = all(
@@ -77,9 +78,10 @@ def _parts(link: Link) -> tuple[tuple[Joint, Rotation], ...]:
 def _sequence(
     link: Link, parts: Sequence[tuple[Joint, Rotation]], first: int
 ) -> tuple[list[Link], Rotation]:
-    """The links of a joint's parts, and the axes of the last one in those of the link.
+    """The links of a joint's parts, and the axes of the last of them in those of the original link.
 
-    With B the axes in which a part is about z, the motion is the product of all ``B m B^T``.
+    With B the axes in which a part is about z and m its motion, the joint's motion is the product of
+    all ``B m Bᵀ``.
     """
     shares = list(zip(parts, _places(link.place, [joint for joint, _ in parts]), strict=True))
     if not link.forward:
@@ -97,7 +99,7 @@ def _sequence(
 
 
 def _places(place: Place, parts: Sequence[Joint]) -> list[Place]:
-    """Each part's share of a joint's coordinates."""
+    """Each part's share of the joint's coordinates, in the order of the parts."""
     found = []
     at = rate = 0
     for joint in parts:

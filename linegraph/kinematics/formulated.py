@@ -1,4 +1,4 @@
-"""A system whose trees are chosen: what every later stage takes."""
+"""A system with its chosen trees: the input of every later stage."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ class Formulated:
     """A system with its graph and the chosen trees.
 
     Attributes:
-        system: what was said.
-        graph: the united terminal graph.
-        formulation: the chosen trees.
+        system: the frozen system: bodies, joints, elements, networks.
+        graph: the system graph, all terminal graphs united.
+        formulation: the chosen trees, and with them the coordinates.
     """
 
     system: System
@@ -44,17 +44,33 @@ class Formulated:
         return self.formulation.translation
 
     def tree(self, algebra: Algebra, parameters: Mapping[str, Scalar]) -> KinematicTree:
-        """The links over an algebra, parameters as given."""
+        """The kinematic tree over an algebra.
+
+        Args:
+            algebra: where its scalars live: floats, SymPy expressions or nodes of a DAG.
+            parameters: the parameters' scalars in that algebra, by name.
+
+        Raises:
+            ModelError: a coupling or a prescribed motion is impossible.
+        """
         return kinematic_tree(self.system, self.formulation, algebra, parameters)
 
     @cached_property
     def sample(self) -> KinematicTree:
-        """The links in numbers: parameters' own values where they have some, any time, any inputs."""
+        """The kinematic tree in numbers: default values of parameters, drawn ones where there is none.
+
+        The time is one at which motions are defined, and inputs are arbitrary. Whatever is judged on
+        this tree (zero moments, parallel axes, rank) must not depend on them.
+        """
         anywhere = Floats(t=self.system.bounds.sometime, u=_Anything())
         return self.tree(anywhere, sample_values(self.system.parameters.values(), anywhere))
 
     def in_numbers(self, algebra: Floats, parameters: Mapping[str, float]) -> KinematicTree:
-        """The links in numbers: those of `sample` where the parameters are, at the algebra's time and inputs.
+        """The kinematic tree over floats, reusing the links of `sample` if the parameters are the same.
+
+        Args:
+            algebra: floats with the time and the inputs.
+            parameters: values by name.
 
         Raises:
             ModelError: a prescribed motion has no value or no derivative there.
@@ -63,20 +79,20 @@ class Formulated:
             try:
                 known = self.sample
             except ModelError:
-                known = None  # a motion that has no value at any time may have one at this
+                known = None  # a motion undefined at the sample time may be defined at this one
             if known is not None and known.parameters == parameters:
                 return under_inputs(known, self.formulation, algebra)
         return self.tree(algebra, parameters)
 
     @cached_property
     def structure(self) -> KinematicTree:
-        """The links with every parameter and input a symbol: for counting and naming."""
+        """The kinematic tree with every parameter and input a symbol: for counting and naming."""
         dag = Dag()
         parameters = self.system.parameters.values()
         return self.tree(dag, valued(parameters, dag, lambda p: dag.symbol("p", p.name)))
 
     def circuit_of(self, chord: str) -> list[str]:
-        """The joints and constraints of the circuit that a chord closes, the chord last."""
+        """The joints and constraints of the fundamental circuit of a chord, the chord last."""
         circuit = self.topology.circuit
         names = {*(joint.name for joint in self.system.joints), *self.topology_names}
         if chord not in circuit.rows:
@@ -91,12 +107,12 @@ class Formulated:
 
     @property
     def topology_names(self) -> tuple[str, ...]:
-        """Inertia edges that are branches by choice."""
+        """The inertia edges that are branches of the tree by choice, as ``body/inertia``."""
         return tuple(f"{body}/inertia" for body in self.formulation.absolute)
 
 
 class _Anything:
-    """Inputs at a state like any other: what is judged there does not depend on them, but motions may."""
+    """Arbitrary inputs: prescribed motions may need some, but nothing judged there depends on them."""
 
     def __getitem__(self, place: int) -> float:
         return 0.1 + 0.07 * place

@@ -1,8 +1,8 @@
-"""Trees for kinematics: named frames as links of their own, in working frames that suit them.
+"""Trees for the kinematics of named frames.
 
-A frame that is asked for becomes a massless link welded to the link that carries it, so that the working
-frames on the way to it are turned and slid until the way to the frame itself is short. Where nothing is
-asked of masses, only the links on the way are kept.
+Each requested frame becomes a massless link welded to the link that carries it. The working frames
+along the way are then turned and slid until the chain from ground to that frame is short, not only the
+chain to the joints. If no masses matter, links off these chains are dropped.
 """
 
 from __future__ import annotations
@@ -34,13 +34,14 @@ if TYPE_CHECKING:
 
 
 class Tipped(NamedTuple):
-    """A tree whose last links are frames that were asked for.
+    """A tree whose last links are the requested frames.
 
     Attributes:
         tree: the links in their shortest working frames.
-        tips: of each frame its link; its working frame is the frame itself.
-        mass: the mass of all that moves; 0 where masses were left out.
-        at_rest: what of the first moment of mass the links' own moments lack: it never moves.
+        tips: the link of each frame; its working frame coincides with the frame itself.
+        mass: the mass of all that moves (kg); 0 if masses were left out.
+        at_rest: first moment (kg m) that links on ground have passed on to it and that never moves; the
+            links' own moments lack it.
     """
 
     tree: KinematicTree
@@ -50,32 +51,36 @@ class Tipped(NamedTuple):
 
 
 class NamedFrame(NamedTuple):
-    """A frame that is asked for: what it is called in emitted code, and in the model."""
+    """A requested frame: its identifier in emitted code, and its name in the model."""
 
     identifier: str
     name: str
 
 
-def require_frame(model: System, frame: str) -> None:
-    """Refuse a name that is neither a body nor a frame of one.
+def require_frame(system: System, frame: str) -> None:
+    """Refuse a name that is neither a body nor a frame of a body.
+
+    Args:
+        system: the bodies and their frames.
+        frame: ``body``, ``body.frame`` or ``body.mass_center``.
 
     Raises:
-        ModelError: says what is like it.
+        ModelError: there is no such frame; suggests a similar name.
     """
-    known = [name for name, (body, _) in terminals_of(model).items() if body in model.bodies]
+    known = [name for name, (body, _) in terminals_of(system).items() if body in system.bodies]
     body = frame.removesuffix(f".{MASS_CENTER}")
-    if frame not in known and (body == frame or body not in model.bodies):
+    if frame not in known and (body == frame or body not in system.bodies):
         raise ModelError(
             f'frame "{frame}"', f"is no body and no frame of one; {nearest(frame, known)}"
         )
 
 
 def seat_of(tree: KinematicTree, frame: str) -> Seat:
-    """The link that carries a frame, -1 for ground, and where it is there.
+    """The link that carries a frame, -1 for ground, and the frame's constant place on it.
 
     Args:
-        tree: the walk's.
-        frame: ``body``, ``body.frame`` or ``body.mass_center``.
+        tree: the links of the walk.
+        frame: ``body``, ``body.frame`` or ``body.mass_center``; a mass centre has its body's axes.
     """
     resolve, terminals = tree.resolve, terminals_of(tree.system)
     if frame in terminals:
@@ -93,15 +98,15 @@ def seat_of(tree: KinematicTree, frame: str) -> Seat:
 def tipped(
     tree: KinematicTree, seats: Sequence[Seat], *, masses: bool, turning: bool = True
 ) -> Tipped:
-    """A tree for the kinematics of frames.
+    """A tree for the kinematics of some frames.
 
     Args:
-        tree: the walk's.
+        tree: the links of the walk.
         seats: the frames.
-        masses: whether the centre of mass is asked for, or momentum; otherwise only the links on the ways
-            to the frames are kept, without masses.
-        turning: whether the axes of the frames are asked for; otherwise they are any, and only the frames'
-            origins and velocities are right.
+        masses: whether the centre of mass or momentum is needed; otherwise only the links between
+            ground and the frames are kept, without masses.
+        turning: whether the frames' axes are needed; otherwise only their origins and velocities are
+            right, and their axes are arbitrary.
     """
     links = list(tree.links)
     mass: Scalar = sum((link.moments.mass for link in links), start=0)
@@ -134,7 +139,7 @@ def tipped(
 
 
 def _on_the_way(links: Sequence[Link], seats: Sequence[Seat]) -> tuple[list[Link], list[Seat]]:
-    """The links between ground and some frames, without masses."""
+    """The links between ground and some frames, without their masses."""
     kept: set[int] = set()
     for seat in seats:
         i = seat.link
@@ -150,7 +155,7 @@ def _on_the_way(links: Sequence[Link], seats: Sequence[Seat]) -> tuple[list[Link
 
 
 def _resting(handed: Sequence[tuple[Moments, Link]]) -> Vector:
-    """The first moment of what links on ground have handed to it, in its axes."""
+    """First moment of mass (kg m) that links on ground have passed on to it, in ground axes."""
     total = vector.ZERO
     for moments, link in handed:
         total = vector.add(total, carried(moments, link.rotation, link.at).first)

@@ -1,8 +1,8 @@
-"""Links and their terminals as ground sees them: the circuit equations of position, velocity, acceleration.
+"""Links and terminals relative to ground: circuit equations of position, velocity and acceleration.
 
 Chords, force elements and the inverse scheme compare points of different links, so everything here is
-resolved in ground axes and taken from the origin of ground. What no result needs is never computed: over
-the DAG it is dead code.
+resolved in ground axes and measured from the origin of ground. Quantities that no result needs cost
+nothing: over the DAG they are dead code.
 """
 
 from __future__ import annotations
@@ -26,13 +26,14 @@ if TYPE_CHECKING:
 
 
 class GroundFrame(NamedTuple):
-    """A frame in motion, in ground axes.
+    """A moving frame: pose, velocity and acceleration relative to ground, all in ground axes.
 
     Attributes:
-        rotation: its components to those of ground.
-        origin: from the origin of ground.
-        angular, linear: its angular velocity and the velocity of its origin.
-        spin, pull: its angular acceleration and the acceleration of its origin.
+        rotation: from its components to those of ground (3 x 3).
+        origin: from the origin of ground (m).
+        angular, linear: its angular velocity (rad/s) and the velocity of its origin (m/s).
+        spin, pull: its angular acceleration (rad/s²) and the acceleration of its origin (m/s²), both
+            kinematic: gravity is not included.
     """
 
     rotation: Matrix
@@ -43,7 +44,12 @@ class GroundFrame(NamedTuple):
     pull: Vector
 
     def at(self, place: Vector, axes: Matrix = IDENTITY_MATRIX) -> GroundFrame:
-        """A frame fixed in this one."""
+        """A frame that is fixed in this one.
+
+        Args:
+            place: its origin, in the axes of this frame (m).
+            axes: from its components to those of this frame.
+        """
         arm = times(self.rotation, place)
         sweep = cross(self.angular, arm)
         bend = add(cross(self.spin, arm), cross(self.angular, sweep))
@@ -62,7 +68,12 @@ GROUND_FRAME = GroundFrame(IDENTITY_MATRIX, ZERO, ZERO, ZERO, ZERO, ZERO)
 
 
 def frames(state: TreeState, acceleration: Iterable[Scalar] | None = None) -> list[GroundFrame]:
-    """Every link's working frame; with no v̇ given, accelerations are those at v̇ = 0."""
+    """The working frame of every link, with its motion.
+
+    Args:
+        state: the tree at (q, v).
+        acceleration: v̇ (rad/s², m/s²); if None, accelerations are those at v̇ = 0.
+    """
     a = None if acceleration is None else tuple(acceleration)
     found: list[GroundFrame] = []
     for link, arm in zip(state.tree.links, state.arms, strict=True):
@@ -85,7 +96,7 @@ def frames(state: TreeState, acceleration: Iterable[Scalar] | None = None) -> li
         spin, pull = times(rotation, spin), times(rotation, pull)
         carried = near.at(arm.at)
         whole = add(turning.angular, angular)
-        # the relative velocity turns with the near link, and with the far one as its components are
+        # Coriolis: u turns with the near link, and its components, given in far axes, with the far link
         coriolis = cross(add(near.angular, whole), linear)
         found.append(
             GroundFrame(
@@ -101,13 +112,26 @@ def frames(state: TreeState, acceleration: Iterable[Scalar] | None = None) -> li
 
 
 def seated(found: Sequence[GroundFrame], seat: Seat) -> GroundFrame:
-    """The frame of a place on a link."""
+    """The frame at a constant place on a link.
+
+    Args:
+        found: the working frames of all links, as `frames` returns them.
+        seat: the link, -1 for ground, and the place on it.
+    """
     link = found[seat.link] if seat.link >= 0 else GROUND_FRAME
     return link.at(seat.at, seat.rotation)
 
 
 class Pair(NamedTuple):
-    """A force and a torque about a point that something exerts on one link, and back on another."""
+    """A force and a torque on one link, with their reaction on another.
+
+    Attributes:
+        force: on the head, in ground axes (N); the tail gets the opposite.
+        torque: on the head, about `point` (N m); the tail gets the opposite, about the same point.
+        point: from the origin of ground (m).
+        head: the link that is acted on; -1 for ground.
+        tail: the link that the reaction acts on; -1 for ground.
+    """
 
     force: Vector
     torque: Vector
@@ -119,10 +143,20 @@ class Pair(NamedTuple):
 def along_velocities(
     state: TreeState, found: Sequence[GroundFrame], pair: Pair
 ) -> Iterator[tuple[Freedom, Scalar]]:
-    """What a force and a torque between two links do along each velocity: a column of Hᵀ, projected.
+    """Generalised forces of a pair of opposite wrenches: Hᵀ restricted to two links, projected.
 
-    Both are carried inward; where the two ways meet they cancel, but for torques that have ended in the
-    inertia edge of a link that turns against ground.
+    Both wrenches are carried inward, and cancel from the link at which the two ways meet. Torques on a
+    link whose orientation is measured from ground end there, in its inertia edge, so they do not cancel
+    and are carried on.
+
+    Args:
+        state: the tree at (q, v).
+        found: the working frames of all links in ground axes.
+        pair: the two wrenches.
+
+    Returns:
+        (freedom, generalised force) for each velocity that is met; one velocity may occur several
+            times.
     """
     tree, arms = state.tree, state.arms
     meeting, level = _meeting(state, pair.head, pair.tail)
@@ -150,7 +184,7 @@ def along_velocities(
 def _projected(
     state: TreeState, frame: GroundFrame, link: int, torque: Vector, force: Vector
 ) -> Iterator[tuple[Freedom, Scalar]]:
-    """A force and a torque about a link's origin along its joint's velocities."""
+    """Generalised forces along one joint's velocities of a wrench about its link's origin, in ground axes."""
     motion, rotation = state.arms[link].motion, frame.rotation
     for a, freedom in enumerate(state.tree.links[link].velocities):
         s, u = times(rotation, motion.angular[a]), times(rotation, motion.linear[a])
@@ -158,7 +192,7 @@ def _projected(
 
 
 def _meeting(state: TreeState, head: int, tail: int) -> tuple[int, bool]:
-    """The link where the ways of two links to ground meet, and whether a level link lies before it."""
+    """The link at which the ways of two links to ground meet, and whether a level link lies on either."""
     tree, arms = state.tree, state.arms
     inward = []
     link = head
@@ -176,13 +210,31 @@ def _meeting(state: TreeState, head: int, tail: int) -> tuple[int, bool]:
 
 
 def seen(tail: Pose | GroundFrame, head: Pose | GroundFrame) -> tuple[Matrix, Vector]:
-    """Head from tail: rotation, and displacement in the tail's axes."""
+    """Pose of the head relative to the tail: the rotation, and the displacement in the tail's axes (m).
+
+    Args:
+        tail: rotation and origin in ground axes.
+        head: the same.
+
+    Returns:
+        The rotation from head components to tail components, and the vector from tail origin to head
+            origin.
+    """
     inward = vector.transpose(tail.rotation)
     return product(inward, head.rotation), times(inward, subtract(head.origin, tail.origin))
 
 
 def relative_motion(tail: GroundFrame, head: GroundFrame) -> tuple[Vector, Vector]:
-    """Velocity of the head's origin as seen from the tail, and relative angular velocity."""
+    """Velocity of the head relative to the tail, in ground axes.
+
+    Args:
+        tail: the frame in which the motion is observed.
+        head: the frame that moves.
+
+    Returns:
+        Velocity of the head's origin as observed in the tail frame (m/s), and relative angular velocity
+            (rad/s).
+    """
     carried = cross(tail.angular, subtract(head.origin, tail.origin))
     u = subtract(subtract(head.linear, tail.linear), carried)
     return u, subtract(head.angular, tail.angular)

@@ -1,8 +1,8 @@
-"""Stage 3: the links of a mechanical tree, each in a frame of its joint.
+"""The links of a mechanical tree, each in a frame of its joint.
 
-A *link* is all bodies welded together beyond one moving joint. Its working frame has its origin at that
-joint and z along the joint's axis. Whatever is constant is folded here once: placements, alignments,
-rotated and shifted mass distributions.
+A *link* is all bodies that are welded together beyond one moving joint. Its working frame has its
+origin at that joint and z along the joint's axis. Everything constant is folded here once: placements,
+alignments, rotated and shifted mass distributions.
 """
 
 from __future__ import annotations
@@ -36,19 +36,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Link:
-    """A rigid body of the reduced tree.
+    """A rigid body of the reduced tree, with the joint that connects it to its parent.
 
     Attributes:
-        name: the bodies welded into it.
-        parent: index of the link nearer to ground; -1 for ground.
-        joint: what connects it to its parent.
+        name: the names of the bodies welded into it.
+        parent: index of the next link towards ground; -1 for ground.
+        joint: connects it to its parent.
         forward: whether the joint's edge points away from ground.
-        rotation, at: the joint's near frame in the parent's working frame; constant.
-        place: where the joint's q and v come from.
-        moments: mass distribution about the joint's own origin and in axes that turn with the link.
-        still: whether the working axes do not turn with the link but stay those of the joint's near side.
-        in_plane: whether the link never turns but about its own z; xx then holds its inertia about z, and
-            that is all it holds of second moments.
+        rotation, at: the joint's near frame in the parent's working frame (at in m); constant.
+        place: the source of the joint's q and v.
+        moments: mass distribution about the joint's origin, in axes that turn with the link.
+        still: whether the working axes keep the orientation of the joint's near side and do not turn
+            with the link.
+        in_plane: whether the link turns about its own z only; the entry xx of the second moments then
+            holds its inertia about z, and all other second moments are zero.
     """
 
     name: str
@@ -64,22 +65,22 @@ class Link:
 
     @property
     def velocities(self) -> tuple[Freedom, ...]:
-        """Where the joint's velocities stand in the state; none where its motion is prescribed."""
+        """The entries of v that move the joint; none if its motion is prescribed."""
         return self.place.velocities
 
     @property
     def caption(self) -> str:
-        """How comments in emitted code call it: its joint and its bodies."""
+        """Label in comments of emitted code: the joint and the bodies."""
         return f"{self.joint.name} -> {self.name}"
 
     @property
     def in_space(self) -> bool:
-        """Whether its joint's rotation is that to ground axes: an orientation in space of its own."""
+        """Whether the joint's rotation is that from the link to ground axes, not to its parent's."""
         return self.place.in_space
 
 
 class Seat(NamedTuple):
-    """A constant place on a link, -1 for ground: its origin and its axes in the link's working frame."""
+    """A constant place on a link, -1 for ground: origin (m) and axes in the link's working frame."""
 
     link: int
     at: Vector
@@ -91,10 +92,11 @@ class Closure:
     """A chord of the tree: a joint that closes a loop, or a constraint.
 
     Attributes:
-        component: what it is; a joint as resolved in the algebra.
-        tail, head: where its ends are, in aligned axes.
-        drive: what it prescribes.
-        restrictions: a joint's reaction directions; of a joint that is a chord in rotation only those there.
+        component: the joint, with its values in the tree's algebra, or the constraint.
+        tail, head: the places of its ends, in aligned axes.
+        drive: the values it prescribes, with two time derivatives each.
+        restrictions: the joint's reaction directions; only the rotational ones if the joint is a chord
+            in rotation alone.
     """
 
     component: Joint | Constraint
@@ -106,22 +108,23 @@ class Closure:
 
 @dataclass(frozen=True)
 class KinematicTree:
-    """All links, every parent before its children, and what state and inputs consist of.
+    """All links, parents before children, with the layout of state and inputs.
 
-    It belongs to one algebra: all its constants are scalars of that.
+    A tree belongs to one algebra: all its constants are scalars of it.
 
     Attributes:
-        system: what was said: bodies, elements, loads, outputs.
+        system: bodies, elements, loads and outputs.
         algebra: where its scalars live.
         parameters: their scalars, by name.
         links: every parent before its children.
-        gravity: the acceleration of free fall in ground axes (m/s^2).
+        gravity: the acceleration of free fall in ground axes (m/s²).
         layout: coordinates and inputs, and which joint reads which.
-        bodies: where each body's frame is: its link, -1 for ground, and its placement there.
-        closures: what the tree leaves out.
+        bodies: for each body its link, -1 for ground, and the pose of its frame in the link's working
+            frame.
+        closures: the chords that are constraints.
         relations: constraints without edges, linear in velocities.
-        ends: of every joint and constraint, branch or chord, where it is.
-        network: the scalar networks.
+        ends: for every joint and constraint, branch or chord, the places of its ends.
+        network: the scalar networks; None if there are none.
         walk: the branches of the translational tree, from ground outward.
     """
 
@@ -140,12 +143,12 @@ class KinematicTree:
 
     @property
     def resolve(self) -> Callable[[Any], Scalar]:
-        """From values of the model, numbers or formulas of parameters, to scalars of the algebra."""
+        """Converts model values, numbers or formulas of parameters, to scalars of the algebra."""
         return resolver(self.algebra, self.parameters)
 
     @property
     def closed(self) -> bool:
-        """Whether there are constraints."""
+        """Whether there are constraints: relations, or chords that restrict or prescribe motion."""
         held = (
             c.restrictions or c.drive or not isinstance(c.component, Joint) for c in self.closures
         )
@@ -153,33 +156,33 @@ class KinematicTree:
 
     @property
     def positions(self) -> tuple[Quantity, ...]:
-        """The coordinates q."""
+        """The coordinates q, with names and units."""
         return tuple(self.layout.positions)
 
     @property
     def velocities(self) -> tuple[Quantity, ...]:
-        """The velocities v."""
+        """The velocities v, with names and units; states of networks last."""
         return tuple(self.layout.velocities)
 
     @property
     def inputs(self) -> tuple[Quantity, ...]:
-        """The inputs u."""
+        """The inputs u, with names and units."""
         return tuple(self.layout.inputs)
 
     @property
     def coupled(self) -> bool:
-        """Whether two joints share a coordinate."""
+        """Whether two joints depend on the same velocity, as with gears."""
         places = [freedom.index for link in self.links for freedom in link.velocities]
         return len(places) > len(set(places))
 
     @property
     def levelled(self) -> bool:
-        """Whether some link's orientation is measured from ground and not from its parent."""
+        """Whether the orientation of some link is measured from ground and not from its parent."""
         return any(link.place.level for link in self.links)
 
     @property
     def outward(self) -> list[int]:
-        """Independent velocities from the root to the leaves, then the states of networks."""
+        """The order of elimination: velocities from the root to the leaves, then the states of networks."""
         order: dict[int, None] = {}
         for link in self.links:
             order.update((freedom.index, None) for freedom in link.velocities)
@@ -187,7 +190,7 @@ class KinematicTree:
         return list(order)
 
     def normalise(self, q: list[float]) -> None:
-        """Give the quaternions among the coordinates length 1, in place."""
+        """Scale the quaternions among the coordinates to length 1, in place."""
         for places in self.quaternions:
             length = math.hypot(*(q[i] for i in places))
             for i in places:
@@ -195,15 +198,16 @@ class KinematicTree:
 
     @property
     def quaternions(self) -> list[tuple[int, ...]]:
-        """The places in q of the entries x, y, z, w of each unit quaternion."""
+        """For each unit quaternion the places of its entries x, y, z, w in q."""
         found = [(link, [freedom.index for freedom in link.place.positions]) for link in self.links]
         return [tuple(places[-4:]) for link, places in found if len(places) > len(link.velocities)]
 
     def regrouped(self) -> KinematicTree:
-        """The same M and h from fewer parameters: what a parent can carry is handed to it, leaf to root.
+        """A tree with the same M and h and fewer non-zero moments: the base-parameter regrouping.
 
-        Exact for the equations of motion, not for joint reactions. Where links stand and what they weigh
-        depends on parameters at most, so that of symbols the sums are computed once, by `prepare`.
+        Moments of a link that its parent can carry instead are passed on, from the leaves to the root.
+        This is exact for the equations of motion, but not for joint reactions. Places and masses of
+        links depend at most on parameters, so with symbols the sums are computed once, in `prepare`.
         """
         return replace(self, links=tuple(handed_on(self.links, links_in_plane(self.links))[0]))
 
@@ -211,21 +215,22 @@ class KinematicTree:
 def handed_on(
     links: Sequence[Link], planar: Sequence[bool]
 ) -> tuple[list[Link], list[tuple[Moments, Link]]]:
-    """What a parent can carry handed to it, leaf to root.
+    """Pass moments that a parent can carry on to it, from the leaves to the root.
 
     Args:
-        links: with moments of their own.
-        planar: of which only the inertia about z is to be kept, since M and h feel no other.
+        links: with their own moments.
+        planar: for each link, whether it moves in a plane, so that only its inertia about z matters to
+            M and h and only this is kept.
 
     Returns:
-        The links, and what those on ground hand to it, beside each the link it comes from. Where none is
-        planar, all together have the mass, the first moment and the momentum of before.
+        The links, and the moments passed on to ground, each with the link that they come from. If no
+            link is planar, links and ground together keep mass, first moment and momentum.
     """
     found = list(links)
     at_rest = []
     for i in reversed(range(len(found))):
         link = found[i]
-        # of a link that does not turn with its parent only the mass can be handed over
+        # a link that does not turn with its parent can pass on no more than its mass
         split = point_apart if link.place.level else link.joint.regroup
         kept, handed = split(link.moments)
         if planar[i]:
@@ -242,7 +247,7 @@ def handed_on(
 
 
 def links_in_plane(links: Sequence[Link]) -> list[bool]:
-    """Whether a link never turns but about its own z, since all joints inward turn about that direction."""
+    """For each link, whether it turns only about its own z, since all joints before it have parallel axes."""
     still: list[bool] = []
     found: list[bool] = []
     for link in links:
@@ -256,10 +261,10 @@ def links_in_plane(links: Sequence[Link]) -> list[bool]:
 
 
 def parallel(link: Link) -> bool:
-    """Whether a link turns about the direction of its parent's z, either way round."""
+    """Whether a link turns about the direction of its parent's z, in either sense."""
     return link.joint.turns and upright(link)
 
 
 def upright(link: Link) -> bool:
-    """Whether a link's z has the direction of its parent's, either way round, before its joint moves."""
+    """Whether a link's z is parallel to its parent's before its joint moves, in either sense."""
     return link.rotation.out((0, 0, 1)) in ((0, 0, 1), (0, 0, -1))

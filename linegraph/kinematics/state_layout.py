@@ -1,8 +1,8 @@
-"""The layout of a model's state and inputs: where every joint finds its coordinates.
+"""The layout of state and inputs: the source of every joint's coordinates.
 
-Positions and velocities stand in declared order: first those of the joints that are branches, then those
-of bodies whose inertia edge is one. Inputs are the efforts of all joints, branches or not, in their
-order, then the named inputs, then motions prescribed by input, each with its first two derivatives.
+Positions and velocities come in declared order: first those of joints that are branches, then those of
+bodies whose inertia edge is one. Inputs are the efforts of all joints, branches or not, in their order,
+then the named inputs, then motions prescribed by input, each with its first two derivatives.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ EFFORT_UNITS = {"rad/s": "N*m", "m/s": "N"}
 
 @dataclass(frozen=True)
 class Freedom:
-    """Where a joint's coordinate comes from: ``q_joint = ratio * (entry of the state) + offset``."""
+    """One coordinate of a joint as a function of the state: ``ratio * (entry index) + offset``."""
 
     index: int
     ratio: Scalar = 1
@@ -46,13 +46,13 @@ class Freedom:
 
 @dataclass(frozen=True)
 class Place:
-    """Where a joint's coordinates come from.
+    """The source of a joint's coordinates: entries of the state, or a prescribed motion.
 
     Attributes:
-        positions, velocities: entries of the state; none where the motion is prescribed.
-        drive: the prescribed coordinates with their first two derivatives; none where they are free.
-        less: of an angle measured from ground, the entries of positions and of velocities that make up
-            the angle of the near body, to be subtracted; ratios have the sign of an addition.
+        positions, velocities: entries of the state; none if the motion is prescribed.
+        drive: the prescribed coordinates with their first two time derivatives; none if they are free.
+        less: for an angle measured from ground, the entries of q and v of the near body's angle, to be
+            added: their sign is reversed.
         level: whether the velocities are measured from ground.
     """
 
@@ -64,24 +64,24 @@ class Place:
 
     @property
     def in_space(self) -> bool:
-        """Whether the coordinates are an orientation in space and not the joint's own."""
+        """Whether the coordinates are an orientation relative to ground, not the joint's own."""
         return self.level and len(self.positions) > 1
 
 
 @dataclass
 class Layout:
-    """All coordinates and inputs of a model, and who reads them.
+    """All coordinates and inputs of a model, and which component reads which.
 
     Attributes:
-        efforts: (velocity, input) of each effort that acts along a velocity alone.
-        pushes: the first input of each joint whose effort does not: chords, and joints measured from ground.
+        efforts: (velocity, input) of each effort that acts along one velocity alone.
+        pushes: first input of each joint whose effort does not: chords, and joints measured from
+            ground.
         places: by joint, and by stem for bodies on their inertia edge.
-        stems: what the coordinates of a body as a whole begin with, where there are any: the body's name,
-            unless that would give one of them the name of something else.
-        drives: prescribed motions by joint or constraint, also of chords.
-        input_rates: named inputs and those of their derivatives that a network needs: u, du and ddu.
-        slopes: for each input whose derivative is an input too, that one.
-        mechanical: how many of the velocities are of mechanics; states of networks follow.
+        stems: prefix of the coordinates of each free body: its name, unless one is taken.
+        drives: prescribed motions by joint or constraint, chords included.
+        input_rates: named inputs and the derivatives that networks need, by kind: u, du and ddu.
+        slopes: for each input whose derivative is an input too, the place of that.
+        mechanical: the number of velocities of mechanics; states of networks follow.
     """
 
     positions: list[Quantity] = field(default_factory=list)
@@ -98,22 +98,28 @@ class Layout:
     mechanical: int = 0
 
     def own(self, joint: str) -> Place | None:
-        """Where a joint finds its own coordinates; None where the state has none of them."""
+        """The source of a joint's own coordinates; None if they are not part of the state."""
         place = self.places.get(joint)
         return None if place is None or place.in_space else place
 
 
 def layout_of(
-    model: System, formulation: Formulation, algebra: Algebra, parameters: Mapping[str, Scalar]
+    system: System, formulation: Formulation, algebra: Algebra, parameters: Mapping[str, Scalar]
 ) -> Layout:
-    """Number the coordinates and inputs of a model.
+    """Number the coordinates and inputs of a system.
+
+    Args:
+        system: joints, bodies, inputs.
+        formulation: the chosen trees, which decide on the coordinates.
+        algebra: makes the symbols of inputs.
+        parameters: their scalars, by name.
 
     Raises:
         ModelError: a coupling or a prescribed motion is impossible.
     """
-    layout = Layout(stems=stems_of(model, formulation))
-    followers = {coupling.joint: coupling for coupling in model.couplings}
-    for joint in model.joints:
+    layout = Layout(stems=stems_of(system, formulation))
+    followers = {coupling.joint: coupling for coupling in system.couplings}
+    for joint in system.joints:
         if joint.drive is None and joint.name not in followers:
             _add_effort(layout, joint, _add_coordinates(layout, joint, formulation))
     for body in formulation.absolute:
@@ -122,33 +128,33 @@ def layout_of(
     layout.mechanical = len(layout.velocities)
     if formulation.network is not None:
         _add_states(layout, formulation.network)
-    for given in model.inputs:
+    for given in system.inputs:
         layout.named_inputs[given.name] = _input(layout, algebra, _quantity(given))
-        _add_rates(layout, model, algebra, given, formulation)
-    values = _time(model, algebra, parameters)
-    for joint in model.joints:
+        _add_rates(layout, system, algebra, given, formulation)
+    values = _time(system, algebra, parameters)
+    for joint in system.joints:
         if joint.drive is not None:
             drive = _drive(layout, joint, algebra, values)
             layout.drives[joint.name] = drive
             layout.places[joint.name] = Place(drive=drive)
-    for constraint in model.constraints:
+    for constraint in system.constraints:
         layout.drives[constraint.name] = _prescribed(layout, constraint, algebra, values)
-    for coupling in model.couplings:
-        _couple(layout, model, coupling.joint, followers, algebra, parameters)
+    for coupling in system.couplings:
+        _couple(layout, system, coupling.joint, followers, algebra, parameters)
     for name, angle in formulation.level.items():
         _measure_from_ground(layout, name, angle)
     return layout
 
 
 def _add_states(layout: Layout, network: Network) -> None:
-    """New velocities for the states of networks."""
+    """Append the states of networks to the velocities."""
     layout.velocities += [state.quantity for state in network.states]
 
 
 def _add_rates(
-    layout: Layout, model: System, algebra: Algebra, declared: Input, formulation: Formulation
+    layout: Layout, system: System, algebra: Algebra, declared: Input, formulation: Formulation
 ) -> None:
-    """New inputs for the derivatives of a named one, as far as a network needs them."""
+    """Append inputs for the derivatives of a named one, up to the order that networks need."""
     name, unit = declared.name, declared.unit or "1"
     layout.input_rates[("u", name)] = layout.named_inputs[name]
     at = len(layout.inputs) - 1
@@ -156,7 +162,7 @@ def _add_rates(
     rate = Quantity(f"{name}_rate", f"{unit}/s", f"first derivative of {name}")
     second = Quantity(f"{name}_acceleration", f"{unit}/s^2", f"second derivative of {name}")
     for kind, quantity in (("du", rate), ("ddu", second))[:order]:
-        if any(other.name == quantity.name for other in model.inputs):
+        if any(other.name == quantity.name for other in system.inputs):
             problem = f"the derivative of {name} is needed under this name; rename the input"
             raise ModelError(f'input "{quantity.name}"', problem)
         layout.input_rates[(kind, name)] = _input(layout, algebra, quantity)
@@ -165,7 +171,7 @@ def _add_rates(
 
 
 def _add_coordinates(layout: Layout, joint: Joint, formulation: Formulation) -> bool:
-    """The coordinates of a joint that is a branch; whether efforts along it act along these alone."""
+    """Append the coordinates of a joint that is a branch; whether its efforts act along these alone."""
     if joint.name not in formulation.joints:
         return False
     angle = formulation.level.get(joint.name)
@@ -186,7 +192,7 @@ def _add_coordinates(layout: Layout, joint: Joint, formulation: Formulation) -> 
 
 
 def _placed(layout: Layout, joint: Joint) -> Place:
-    """New entries of the state for all coordinates of a joint."""
+    """Append new entries of the state for all coordinates of a joint."""
     q, v = joint.positions(), joint.velocities()
     first, start = len(layout.positions), len(layout.velocities)
     layout.positions += q
@@ -198,7 +204,7 @@ def _placed(layout: Layout, joint: Joint) -> Place:
 
 
 def _add_effort(layout: Layout, joint: Joint, along: bool) -> None:
-    """New inputs for the efforts of a joint, whether or not its coordinates are of the state."""
+    """Append inputs for the efforts of a joint, whether its coordinates are part of the state or not."""
     if not joint.effort:
         return
     first = len(layout.inputs)
@@ -213,7 +219,7 @@ def _add_effort(layout: Layout, joint: Joint, along: bool) -> None:
 
 
 def _measure_from_ground(layout: Layout, name: str, angle: Angle) -> None:
-    """Note what to subtract from an angle measured from ground to get the joint's own."""
+    """Note the angles to subtract from one measured from ground to get the joint's own."""
     place = layout.places[name]
     less: tuple[list[Freedom], list[Freedom]] = ([], [])
     for other, sign in angle.less or ():
@@ -232,10 +238,10 @@ def _input(layout: Layout, algebra: Algebra, quantity: Quantity) -> Scalar:
     return algebra.symbol("u", len(layout.inputs) - 1)
 
 
-def _time(model: System, algebra: Algebra, parameters: Mapping[str, Scalar]) -> dict[str, Scalar]:
-    """What a prescribed motion may depend on, as jets: parameters, which are constant, and the time."""
+def _time(system: System, algebra: Algebra, parameters: Mapping[str, Scalar]) -> dict[str, Scalar]:
+    """The quantities that a prescribed motion may depend on, as jets: constant parameters, and time."""
     values: dict[str, Scalar] = {name: lifted(value) for name, value in parameters.items()}
-    if model.depends_on_time:
+    if system.depends_on_time:
         values["t"] = Jet(algebra.symbol("t"), 1, 0)
     return values
 
@@ -269,7 +275,7 @@ def _drive(
 def _prescribed(
     layout: Layout, constraint: Constraint, algebra: Algebra, values: Mapping[str, Scalar]
 ) -> tuple[Jet | None, ...]:
-    """What a constraint prescribes as functions of time; None where it prescribes nothing."""
+    """The values that a constraint prescribes as functions of time; None where it prescribes nothing."""
     who = f'{constraint.kind} "{constraint.name}"'
     return tuple(
         None if x is None else _motion(layout, algebra, values, who, x, quantity)
@@ -285,7 +291,7 @@ def _motion(
     given: Any,
     quantity: Quantity,
 ) -> Jet:
-    """A prescribed value with its first two derivatives, from an expression of t or from inputs."""
+    """A prescribed value with its first two time derivatives, from an expression of t or from inputs."""
     if given == BY_INPUT:
         return _from_inputs(layout, algebra, quantity)
     set_label(algebra, f"motion of {quantity.name}")
@@ -298,7 +304,7 @@ def _motion(
 
 
 def has_plain_rates(joint: Joint) -> bool:
-    """Whether v is the derivative of q, judged at a state like any other."""
+    """Whether v is the derivative of q, tested at arbitrary values of q and v."""
     q, v = joint.positions(), joint.velocities()
     if len(q) != len(v):
         return False
@@ -326,7 +332,7 @@ def _from_inputs(layout: Layout, algebra: Algebra, quantity: Quantity) -> Jet:
 
 def _couple(
     layout: Layout,
-    model: System,
+    system: System,
     name: str,
     followers: Mapping[str, Coupling],
     algebra: Algebra,
@@ -335,7 +341,7 @@ def _couple(
     """Follow the chain of masters to a joint that leads and compose the ratios."""
     who = f'joint "{name}"'
     resolve = resolver(algebra, parameters)
-    joints = {joint.name: joint for joint in model.joints}
+    joints = {joint.name: joint for joint in system.joints}
     ratio: Scalar = 1
     offset: Scalar = 0
     seen = {name}
@@ -345,7 +351,7 @@ def _couple(
         for part in (follower, coupling.master):
             if part not in joints or joints[part].freedoms != 1:
                 raise ModelError(who, f'cannot follow: "{part}" is not a joint of one freedom')
-        # offset first: it is seen through the ratios gathered so far
+        # offset first: it is multiplied by the ratios of the couplings passed so far
         offset = offset + ratio * resolve(coupling.offset)
         ratio = ratio * resolve(coupling.ratio)
         follower = coupling.master
@@ -367,7 +373,13 @@ def _followed(master: Place, ratio: Scalar, offset: Scalar) -> Place:
 def coordinates(
     place: Place, q: tuple[Scalar, ...], v: tuple[Scalar, ...]
 ) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
-    """A joint's own q and v, from the state or as prescribed."""
+    """A joint's own q and v, from the state or as prescribed.
+
+    Args:
+        place: the source of the joint's coordinates.
+        q: all coordinates.
+        v: all velocities.
+    """
     if place.drive:
         return tuple(x.x for x in place.drive), tuple(x.dx for x in place.drive)
     at = tuple(f.ratio * q[f.index] + f.offset for f in place.positions)
@@ -379,5 +391,10 @@ def coordinates(
 
 
 def own_rates(place: Place, v: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
-    """The velocities a joint has in the state, also where they are measured from ground."""
+    """The joint's entries of v with their ratios, also if they are measured from ground.
+
+    Args:
+        place: the source of the joint's coordinates.
+        v: all velocities.
+    """
     return tuple(f.ratio * v[f.index] for f in place.velocities)

@@ -1,4 +1,4 @@
-"""The walk from ground outward along the chosen tree, on which all that is constant is folded into links."""
+"""The walk from ground outward along the chosen tree, which folds everything constant into links."""
 
 from __future__ import annotations
 
@@ -34,24 +34,30 @@ _ALIGNED = Placement(ZERO, IDENTITY_MATRIX)
 
 
 def kinematic_tree(
-    model: System, formulation: Formulation, algebra: Algebra, parameters: Mapping[str, Scalar]
+    system: System, formulation: Formulation, algebra: Algebra, parameters: Mapping[str, Scalar]
 ) -> KinematicTree:
-    """Walk the tree from ground outward and fold all that is constant into links.
+    """Reduce a system to links: walk its tree from ground outward.
+
+    Args:
+        system: bodies, joints, constraints.
+        formulation: the chosen trees.
+        algebra: where the scalars live.
+        parameters: their scalars in it, by name.
 
     Raises:
-        ModelError: a coupling is impossible.
+        ModelError: a coupling or a prescribed motion is impossible, or an axis is no direction.
     """
-    layout = layout_of(model, formulation, algebra, parameters)
-    return _Walk(model, formulation, layout, algebra, parameters).along()
+    layout = layout_of(system, formulation, algebra, parameters)
+    return _Walk(system, formulation, layout, algebra, parameters).along()
 
 
 def under_inputs(tree: KinematicTree, formulation: Formulation, algebra: Algebra) -> KinematicTree:
-    """A tree at another time and for other inputs: what motions prescribe changes, the links do not.
+    """The same tree at another time and for other inputs: only prescribed motions change, not the links.
 
     Args:
         tree: the links, over an algebra of the same kind.
-        formulation: the trees that were chosen.
-        algebra: has the time and the inputs.
+        formulation: the chosen trees.
+        algebra: has the new time and inputs.
 
     Raises:
         ModelError: a prescribed motion has no value or no derivative there.
@@ -77,25 +83,25 @@ class _Walk:
 
     def __init__(
         self,
-        model: System,
+        system: System,
         formulation: Formulation,
         layout: Layout,
         algebra: Algebra,
         parameters: Mapping[str, Scalar],
     ) -> None:
-        self._model = model
+        self._model = system
         self._formulation = formulation
         self._layout = layout
         self._algebra = algebra
         self._parameters = parameters
         self._resolve = resolver(algebra, parameters)
-        self._joints = {joint.name: joint for joint in model.joints}
-        self._terminals = terminals_of(model)
+        self._joints = {joint.name: joint for joint in system.joints}
+        self._terminals = terminals_of(system)
         self._links: list[Link] = []
         self._where = {GROUND: (-1, Placement(ZERO, IDENTITY_MATRIX))}
 
     def along(self) -> KinematicTree:
-        """Take every joint branch in turn; arms lie within a body and are constant."""
+        """Cross every joint branch in turn; arms lie within a body and are constant."""
         for step in self._formulation.translation.walk:
             joint = self._joints.get(step.edge.name)
             if joint is not None and step.edge.component == joint.name:
@@ -122,7 +128,7 @@ class _Walk:
         )
 
     def _left_out(self, name: str) -> bool:
-        """Whether the tree does not say how the ends of a joint or constraint move against each other."""
+        """Whether the tree leaves the relative motion of the ends of a joint or constraint open: a chord."""
         angle = self._formulation.level.get(name)
         in_space = angle is not None and angle.less is None
         return in_space or name not in self._formulation.joints
@@ -141,7 +147,7 @@ class _Walk:
         place = self._layout.places[joint.name]
         forward = step.forward
         if place.in_space:
-            # an orientation in space, measured from ground: the link has the body's own axes
+            # an orientation measured from ground: the link has the body's own axes, not the joint's
             joint, forward = turning(joint.name, body, self._layout.stems[body]), True
             far = Placement(far.at, IDENTITY_MATRIX)
         else:
@@ -178,14 +184,14 @@ class _Walk:
             yield Closure(constraint, tail, head, drives[constraint.name])
 
     def _seat(self, terminal: str, alignment: Placement) -> Seat:
-        """Where a terminal's aligned axes are in its link."""
+        """A terminal's aligned axes as a place on its link."""
         body, placement = self._terminals[terminal]
         link, pose = self._where[body]
         whole = self._compose(self._compose(pose, self._constant(placement)), alignment)
         return Seat(link, whole.at, whole.rotation)
 
     def _enter(self, body: str, index: int, pose: Placement) -> None:
-        """Note where a body is and add its mass distribution to its link."""
+        """Record the pose of a body on its link, and add its mass distribution to the link's."""
         self._where[body] = (index, pose)
         if index < 0:
             return

@@ -1,4 +1,4 @@
-"""A kinematic tree at a state: what all equations of motion are evaluated at."""
+"""A kinematic tree at a state (q, v), at which all equations of motion are evaluated."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ class TreeState:
 
     Args:
         tree: the links.
-        q: the coordinates, one for each of `tree.positions`.
-        v: the velocities, one for each of `tree.velocities`, states of networks included.
+        q: the coordinates, one per entry of `tree.positions` (rad, m; quaternions have length 1).
+        v: the velocities, one per entry of `tree.velocities` (rad/s, m/s), states of networks included.
     """
 
     def __init__(self, tree: KinematicTree, q: Iterable[Scalar], v: Iterable[Scalar]) -> None:
-        """Evaluate the joints' motions: everything else follows from them."""
+        """Evaluate the joints' motions, from which everything else follows."""
         self.tree = tree
         self.q = tuple(q)
         self.v = tuple(v)
@@ -34,10 +34,10 @@ class TreeState:
 
     @property
     def algebra(self) -> Algebra:
-        """Where the scalars live."""
+        """The algebra in which the state's scalars live."""
         return self.tree.algebra
 
     @cached_property
     def coordinate_rates(self) -> list[Scalar]:
-        """``q̇ = N(q) v``."""
+        """Rates of the coordinates, ``q̇ = N(q) v``."""
         return coordinate_rates(self.tree, self.q, self.v)

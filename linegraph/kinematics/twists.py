@@ -1,16 +1,18 @@
-"""How a link's frame stands and moves, seen from ground: pose, Jacobian, velocity, acceleration at v̇ = 0.
+"""Pose, Jacobian, velocity and acceleration at v̇ = 0 of a link's frame relative to ground.
 
-The velocity of a frame is that of its origin and its angular velocity, both in ground axes. By the circuit
-equations it is the sum of what the joints on the way add:
+The velocity of a frame is that of its origin together with its angular velocity, both in ground axes.
+By the circuit equations it is the sum of the contributions of the joints on the way:
 
-    w = sum_i s_i v_i        u = sum_i (u_i + s_i x d_i) v_i
+    ω = Σ s_i v_i        u = Σ (u_i + s_i x d_i) v_i
 
-with s_i and u_i the joint's angular and linear motion in ground axes, and d_i from its origin to the
-frame's. The d_i are summed from the frame inward, so that no two places are ever subtracted. A link that
-turns against ground cuts the way: joints before it move its origin, but do not turn it.
+with s_i and u_i the joint's unit angular and linear velocity in ground axes, and d_i the vector from
+its origin to the frame's. The d_i are summed from the frame inward and are never differences of two
+positions, which would lose digits far from ground. A link whose orientation is measured from ground
+interrupts the chain: joints before it move its origin, but do not turn it.
 
-The same velocity can be carried along link by link, in the links' own axes or in those of ground. Which way
-is the shortest depends on the joints and on what else is asked for, so all are offered and the caller counts.
+The same velocity can be carried from link to link, in the links' own axes or in those of ground. Which
+way takes the fewest operations depends on the joints and on the other results, so all are offered, and
+`programs.kinematics` counts.
 """
 
 from __future__ import annotations
@@ -33,16 +35,17 @@ if TYPE_CHECKING:
     from linegraph.kinematics.tree_state import TreeState
 
 Twist = tuple[Vector, Vector]
-"""Of the origin and angular, in this order, in ground axes: velocities or accelerations."""
+"""Linear, then angular velocity or acceleration of a frame's origin, mostly in ground axes."""
 
 
 class Column(NamedTuple):
-    """What a unit of one of a joint's velocities does.
+    """The effect of a unit of one velocity on two vectors: a column of a Jacobian of six rows.
 
     Attributes:
-        freedom: where it comes from in the state; None where the motion is prescribed.
-        rate: its value.
-        first, second: what it makes of the two vectors that are asked for.
+        freedom: the entry of v; None if the motion is prescribed.
+        rate: its value (rad/s, m/s).
+        first, second: effect on the first and on the second vector, e.g. on linear and angular
+            velocity.
     """
 
     freedom: Freedom | None
@@ -52,14 +55,14 @@ class Column(NamedTuple):
 
 
 class Outlook:
-    """All links of a tree at a state, as seen from ground, over any algebra.
+    """All links of a tree at a state relative to ground, over any algebra; computed on demand.
 
     Args:
-        state: the links and where they are.
+        state: the tree at (q, v).
     """
 
     def __init__(self, state: TreeState) -> None:
-        """Nothing is calculated before it is asked for."""
+        """Keep the state; frames and velocities are computed when they are first needed."""
         self.state = state
         self.tree = state.tree
         self.algebra = state.algebra
@@ -67,17 +70,17 @@ class Outlook:
 
     @cached_property
     def frames(self) -> list[GroundFrame]:
-        """Every link's frame in ground axes, accelerations at v̇ = 0."""
+        """The working frame of every link in ground axes, with accelerations at v̇ = 0."""
         return frames(self.state)
 
     @cached_property
     def accelerations(self) -> list[Twist]:
-        """Of every link the acceleration at v̇ = 0 in its own axes: linear, angular."""
+        """Linear and angular acceleration of every link at v̇ = 0, in its own axes and without gravity."""
         return [(spin.linear, spin.angular) for spin in spins(self.state, gravity=ZERO)]
 
     @cached_property
     def velocities(self) -> list[Twist]:
-        """Of every link the velocity in its own axes: linear, angular."""
+        """Linear and angular velocity of every link, of its origin and in its own axes."""
         found: list[Twist] = []
         for link, arm in zip(self.tree.links, self.arms, strict=True):
             set_label(self.algebra, f"velocity, {link.caption}")
@@ -90,21 +93,21 @@ class Outlook:
         return found
 
     def rotation(self, i: int) -> Matrix:
-        """A link's components to those of ground; -1 is ground."""
+        """Rotation from a link's working axes to those of ground; -1 is ground."""
         return self.frames[i].rotation if i >= 0 else IDENTITY_MATRIX
 
     def arm(self, i: int) -> Vector:
-        """From the origin of a link's parent to its own."""
+        """Vector from the origin of a link's parent to the link's own, in ground axes (m)."""
         return times(self.rotation(self.tree.links[i].parent), self.arms[i].at)
 
     def way(self, tip: int) -> Iterator[int]:
-        """The links from a tip to ground."""
+        """The links from a tip to ground, tip first."""
         while tip >= 0:
             yield tip
             tip = self.tree.links[tip].parent
 
     def moved(self, i: int) -> Iterator[tuple[Freedom | None, Scalar, Vector, Vector]]:
-        """Of each velocity of a joint its freedom, its rate, and linear and angular motion in ground axes."""
+        """For each velocity of a joint: freedom, rate, unit linear and angular velocity in ground axes."""
         link, arm = self.tree.links[i], self.arms[i]
         freedoms = link.velocities or (None,) * len(arm.rates)
         motion = zip(freedoms, arm.rates, arm.motion.linear, arm.motion.angular, strict=True)
@@ -112,14 +115,24 @@ class Outlook:
             yield freedom, rate, times(self.rotation(i), u), times(self.rotation(i), s)
 
     def out(self, tip: int, x: Vector) -> Vector:
-        """A vector in a link's axes in those of ground, carried from link to link."""
+        """A vector turned from a link's axes to those of ground, one link at a time.
+
+        Args:
+            tip: the link.
+            x: the vector, in the link's working axes.
+        """
         for i in self.way(tip):
             x = self.arms[i].rotation.out(x)
         return x
 
 
 def position(view: Outlook, tip: int) -> Vector:
-    """Where a frame's origin is, from that of ground."""
+    """Position of a link's origin, from that of ground and in ground axes (m).
+
+    Args:
+        view: the links relative to ground.
+        tip: the link.
+    """
     total = ZERO
     for i in view.way(tip):
         set_label(view.algebra, f"place, {view.tree.links[i].caption}")
@@ -128,7 +141,15 @@ def position(view: Outlook, tip: int) -> Vector:
 
 
 def columns(view: Outlook, tip: int) -> list[Column]:
-    """What every joint on the way to a frame adds to its velocity, from the root outward."""
+    """The Jacobian of a link's origin as columns: one per velocity on the way, root first.
+
+    Args:
+        view: the links relative to ground.
+        tip: the link.
+
+    Returns:
+        Columns whose first vector is linear, whose second angular; both in ground axes.
+    """
     found: list[Column] = []
     turning = True
     for i, lever in _levers(view, tip):
@@ -143,7 +164,7 @@ def columns(view: Outlook, tip: int) -> list[Column]:
 
 
 def _levers(view: Outlook, tip: int) -> Iterator[tuple[int, Vector]]:
-    """The links from a frame to ground, and from each one's origin the place that its turning moves."""
+    """The links from a tip to ground, each with the vector from its origin to the point that it turns."""
     lever = ZERO
     for i in view.way(tip):
         yield i, lever
@@ -152,7 +173,12 @@ def _levers(view: Outlook, tip: int) -> Iterator[tuple[int, Vector]]:
 
 
 def matrix(found: Iterable[Column], size: int) -> list[list[Scalar]]:
-    """Columns as a matrix (6 x size); joints that share a velocity share a column."""
+    """Columns as a matrix (6 x size); joints that share a velocity share a column.
+
+    Args:
+        found: the columns; those of prescribed motions are left out.
+        size: the number of velocities.
+    """
     rows: list[list[Scalar]] = [[0] * size for _ in range(6)]
     for column in found:
         if column.freedom is None:
@@ -164,7 +190,7 @@ def matrix(found: Iterable[Column], size: int) -> list[list[Scalar]]:
 
 
 def total(found: Iterable[Column]) -> Twist:
-    """The sum of columns times rates, what is prescribed included."""
+    """The sum of columns times their rates, prescribed motions included."""
     first = second = ZERO
     for column in found:
         first = add(first, vector.scale(column.rate, column.first))
@@ -173,7 +199,16 @@ def total(found: Iterable[Column]) -> Twist:
 
 
 def velocities(view: Outlook, tip: int) -> list[Twist]:
-    """Ways to a frame's velocity: by columns, along in ground axes, along in the links' own axes."""
+    """Alternative formulas for a frame's velocity (m/s, rad/s), all in ground axes and all equal.
+
+    Args:
+        view: the links relative to ground.
+        tip: the link whose working frame is meant.
+
+    Returns:
+        Linear and angular velocity: from the columns, along the chain in ground axes, and along it in
+            the links' own axes, turned to ground in two ways.
+    """
     frame = view.frames[tip]
     return [
         total(columns(view, tip)),
@@ -183,21 +218,30 @@ def velocities(view: Outlook, tip: int) -> list[Twist]:
 
 
 def accelerations(view: Outlook, tip: int) -> list[Twist]:
-    """Ways to a frame's acceleration at v̇ = 0: in ground axes, in the links' own, from the columns."""
+    """Alternative formulas for a frame's acceleration at v̇ = 0 (m/s², rad/s²), in ground axes.
+
+    Args:
+        view: the links relative to ground.
+        tip: the link whose working frame is meant.
+
+    Returns:
+        Linear and angular acceleration, without gravity: along the chain in ground axes, in the links'
+            own axes, and from products of the columns.
+    """
     frame = view.frames[tip]
     found = [(frame.pull, frame.spin), *_seen(view, tip, view.accelerations[tip])]
     return found if view.tree.levelled else [*found, _by_products(view, tip)]
 
 
 def _by_products(view: Outlook, tip: int) -> Twist:
-    """A frame's acceleration at v̇ = 0 from what each joint adds to its velocity.
+    """A frame's acceleration at v̇ = 0 from the contributions of each joint to its velocity.
 
-    With w_i and σ_i what joint i adds to the velocity and to the angular velocity, and ω_i the sum of σ up to
-    it, these are the sums over all joints of
+    With w_i and σ_i the contributions of joint i to linear and angular velocity, and ω_i the sum of all
+    σ up to joint i, it is the sum over all joints of
 
         (ω_i + ω_(i-1)) x w_i        ω_(i-1) x σ_i
 
-    and of what the joints' own motions make of constant v, and what is prescribed.
+    plus the joints' own accelerations at constant v, and prescribed accelerations.
     """
     linear = angular = turned = ZERO
     for i, lever in reversed(list(_levers(view, tip))):
@@ -220,7 +264,7 @@ def _by_products(view: Outlook, tip: int) -> Twist:
 
 
 def _seen(view: Outlook, tip: int, own: Twist) -> list[Twist]:
-    """A pair of vectors in a link's axes in those of ground: from link to link, or by its rotation."""
+    """A pair of vectors turned from a link's axes to those of ground: link by link, or by its rotation."""
     set_label(view.algebra, f"to ground axes, {view.tree.links[tip].caption}")
     rotation = view.rotation(tip)
     first, second = own

@@ -1,15 +1,15 @@
-"""Working frames in which the equations of motion are shortest.
+"""Working frames in which the equations of motion take the fewest operations.
 
-About and along its joint's axis a link's working frame may stand where one likes: the motion stays the
-same. So a joint of several axes is taken apart first (`expansion`), and each link is
+A link's working frame may be turned about and slid along its joint's axis without changing the motion.
+So joints of several axes are taken apart first (`expansion`), and then each link's frame is
 
-    turned   until the constant rotation to a child, or the way to it, needs fewer components;
-    slid     until as many components of the arms as can be are zero;
+    turned   so that the constant rotation or the arm to a child has fewer components;
+    slid     so that as many components of the arms as possible are zero;
     still    at the end of a limb and in a run of parallel axes: its axes do not turn with the link, and
-             sine and cosine of sums of angles take the place of products of rotations;
+             sine and cosine of sums of angles replace products of rotations.
 
-and the moments that a parent can carry are handed to it. M, h, inverse and forward dynamics stay the same;
-reactions do not, so everything that speaks of single bodies keeps the frames of the walk.
+Moments that a parent can carry are passed on to it. M, h, inverse and forward dynamics stay the same.
+Reactions do not, so everything about single bodies uses the frames of the walk.
 """
 
 from __future__ import annotations
@@ -52,28 +52,29 @@ DUST = 4e-15
 """Rounding of a product of constant rotations."""
 
 WELL_APART = 0.1
-"""Axes closer to parallel than this sine of the angle between them, or a direction closer to normal, do not
-say where to turn or how far to slide: digits would be lost."""
+"""Least sine of the angle between two axes, or cosine to a direction, that decides on a turn or a slide:
+nearly parallel axes would lose digits."""
 
 FULL = 6
-"""Moments of a link that carries none, of the ten, from which on turning them costs less than turning what
-they cause."""
+"""Number of non-zero moments (of ten) of a leaf link from which on turning them is cheaper than turning
+the forces that they cause."""
 
 LONG = 5
-"""Links in a plane, from ground on, from which on angles to ground cost less than angles between links."""
+"""Number of links in a plane, counted from ground, from which on angles to ground are cheaper than angles
+between links."""
 
 SWEEPS = 3
-"""A frame that is slid moves the arms on both sides, so the links are gone through more than once."""
+"""Passes over all links: sliding one frame changes the arms on both of its sides."""
 
 
 class Shortened(NamedTuple):
     """A tree in its shortest working frames.
 
     Attributes:
-        tree: the links; what it says of bodies and ends holds for the walk only.
-        places: for each link of the walk the one that has its bodies.
-        poses: for each link of the walk that one's working frame in its own.
-        at_rest: what links on ground hand to it, and these links.
+        tree: the links; its `bodies` and `ends` still refer to the links of the walk.
+        places: for each link of the walk, the link here that has its bodies.
+        poses: for each link of the walk, the working frame of that link in its own.
+        at_rest: moments that links on ground pass on to it, each with its link.
     """
 
     tree: KinematicTree
@@ -84,7 +85,12 @@ class Shortened(NamedTuple):
     def rehoused(
         self, wrenches: Iterable[tuple[Vector, Vector]], arms: Sequence[Arm]
     ) -> list[tuple[Vector, Vector]]:
-        """Forces and torques given in the frames of the walk, in and about those of the tree."""
+        """Wrenches in the frames of the walk, transformed to the frames of this tree.
+
+        Args:
+            wrenches: force (N) and torque about the origin (N m) for each link of the walk.
+            arms: the joints of this tree at the state.
+        """
         found = [(ZERO, ZERO)] * len(self.tree.links)
         for (force, torque), place, pose in zip(wrenches, self.places, self.poses, strict=True):
             turned, turn = rotation_of(pose.rotation), arms[place].turn
@@ -94,16 +100,16 @@ class Shortened(NamedTuple):
 
 
 def shortened(tree: KinematicTree, *, whole: bool = False, turning: bool = True) -> Shortened:
-    """The same M and h in fewer operations.
+    """The tree in working frames that give the same M and h with fewer operations.
 
     Args:
-        tree: the walk's.
-        whole: keep also the moments that neither M nor h feels, so that the momentum is the same, too.
-        turning: whether links that are welded to others turn with them; otherwise only their origins and
-            their velocities are right, and their axes any.
+        tree: the links of the walk.
+        whole: keep moments that neither M nor h depends on, so that momentum stays the same too.
+        turning: whether links that are welded to others turn with them; otherwise only their origins
+            and velocities are right, and their axes are arbitrary.
     """
     if tree.levelled:
-        # angles measured from ground leave no choice
+        # an angle measured from ground fixes its link's axes: nothing is left to choose
         same = (Placement(ZERO, IDENTITY_MATRIX),) * len(tree.links)
         short, at_rest = _regrouped(tree, whole)
         return Shortened(short, tuple(range(len(tree.links))), same, at_rest)
@@ -136,7 +142,7 @@ def _children(links: Sequence[Link]) -> list[list[int]]:
 
 
 def _weights(links: Sequence[Link]) -> list[int]:
-    """About what a component of an arm costs: motion, forces and moments, and each column of M it is on."""
+    """Estimated cost of a component of each arm: motion, forces, moments, and the columns of M beyond it."""
     columns = [len(link.velocities) for link in links]
     for i in reversed(range(len(links))):
         if links[i].parent >= 0:
@@ -145,7 +151,7 @@ def _weights(links: Sequence[Link]) -> list[int]:
 
 
 def _oriented(link: Link) -> bool:
-    """Whether its rotation is made of numbers; arms and moments may be what `prepare` makes of parameters."""
+    """Whether a link's constant rotation is numeric; arms and moments may be sums made by `prepare`."""
     return _known(x for row in link.rotation.matrix() for x in row)
 
 
@@ -153,13 +159,13 @@ def _known(entries: Iterable[Scalar]) -> bool:
     return all(isinstance(x, (int, float)) for x in entries)
 
 
-# keeping still
+# axes that do not turn
 
 
 def _stilled(
     tree: KinematicTree, children: Sequence[Sequence[int]], turning: bool
 ) -> KinematicTree:
-    """Say of each link whether its working axes turn with it."""
+    """Decide for each link whether its working axes turn with it."""
     links = tree.links
     lengths = _lengths_in_plane(links)
     found = []
@@ -177,7 +183,7 @@ def _stilled(
 
 
 def _lengths_in_plane(links: Sequence[Link]) -> list[int]:
-    """Of each link that moves in a plane, how many there are on the longest way through it."""
+    """For each link that moves in a plane, the number of links on the longest way through it."""
     inward = [0] * len(links)
     for i, link in enumerate(links):
         if link.in_plane:
@@ -189,13 +195,13 @@ def _lengths_in_plane(links: Sequence[Link]) -> list[int]:
     return longest
 
 
-# turning
+# turning about the joint's axis
 
 
 def _turned(
     links: list[Link], children: Sequence[Sequence[int]]
 ) -> tuple[list[Link], list[Matrix]]:
-    """Turn working frames about their joints' axes; the angles of the joints make up for it."""
+    """Turn working frames about their joints' axes; offsets of the joints' angles compensate."""
     weights = _weights(links)
     turns: list[Matrix] = [IDENTITY_MATRIX] * len(links)
     for i, link in enumerate(links):
@@ -217,9 +223,10 @@ def _turned(
 
 
 def _best_angle(link: Link, children: Sequence[Link], weights: Sequence[int]) -> float:
-    """The angle about z by which a link's working frame is turned best.
+    """The angle about z at which a link's working frame makes its children cheapest.
 
-    One that carries none is turned to its mass: one component of its first moment is left.
+    A link without children is turned towards its mass centre, which leaves one component of its first
+    moment.
     """
     x, y, _ = link.moments.first
     if not children:
@@ -234,7 +241,7 @@ def _seen_turned(moments: Moments, turn: Matrix) -> Moments:
 
 
 def _candidates(children: Sequence[Link]) -> list[float]:
-    """Angles about z that may make a child's rotation or arm simpler; no angle first."""
+    """Angles about z that may make a child's rotation or arm simpler; zero comes first and wins ties."""
     found = [0.0]
     for child in children:
         m = child.rotation.matrix()
@@ -242,7 +249,7 @@ def _candidates(children: Sequence[Link]) -> list[float]:
             if _apart(m):
                 found.append(math.atan2(m[0][2], -m[1][2]))
             elif child.joint.freedoms == 0 and upright(child):
-                # no joint turns it: the parent's angle is all that can
+                # welded links have no joint to turn them: only the parent's angle can
                 found.append(math.atan2(m[1][0], m[0][0]))
         if _known(child.at) and child.at[0] != 0 and child.at[1] != 0:
             found.append(math.atan2(child.at[1], child.at[0]))
@@ -250,7 +257,7 @@ def _candidates(children: Sequence[Link]) -> list[float]:
 
 
 def _cost(angle: float, children: Sequence[Link], weights: Sequence[int]) -> float:
-    """What rotations and arms of the children cost in axes turned by an angle."""
+    """Estimated cost of the rotations and arms of the children in axes turned by an angle."""
     back = vector.transpose(_about_z(angle))
     total = 0.0
     for child, weight in zip(children, weights, strict=True):
@@ -280,12 +287,12 @@ def _seen_from(link: Link, back: Matrix) -> Link:
 
 
 def _apart(m: Matrix) -> bool:
-    """Whether a rotation's z is far enough from its own to say where they are in one plane."""
+    """Whether the z axes of a rotation differ enough to define their common normal."""
     return bool(math.hypot(m[2][0], m[2][1]) > WELL_APART)
 
 
 def _many(rotation: Rotation, link: Link) -> bool:
-    """Whether a constant rotation could be cheaper: a turn about z is none where the joint turns anyway."""
+    """Whether a constant rotation could be cheaper: a turn about z is free where the joint turns anyway."""
     (factor,) = rotation.factors
     return not isinstance(factor, Turn) or (factor.axis == 2 and link.joint.turns)
 
@@ -322,7 +329,7 @@ def _angle_shifted(link: Link, angle: float) -> Link:
     return replace(link, place=moved)
 
 
-# sliding
+# sliding along the joint's axis
 
 
 def _slid(links: list[Link], children: Sequence[Sequence[int]]) -> tuple[list[Link], list[Vector]]:
@@ -350,7 +357,7 @@ def _slid(links: list[Link], children: Sequence[Sequence[int]]) -> tuple[list[Li
 def _best_shift(
     link: Link, children: Sequence[Link], weight: int, weights: Sequence[int], axis: int
 ) -> Vector:
-    """The shift along an axis of a link's frame that leaves its arm and its children's the cheapest."""
+    """The shift along an axis of a link's frame that makes its arm and its children's cheapest."""
     along = link.rotation.out(IDENTITY_MATRIX[axis])
     found: list[Scalar] = [0]
     for x, d in zip(link.at, along, strict=True):
@@ -371,7 +378,7 @@ def _best_shift(
 
 
 def _moved_origin(link: Link, shift: Vector) -> Link:
-    """A link with its origin shifted, both on its near and on its far side."""
+    """A link with its origin shifted, on both the near and the far side."""
     at = swept(add(link.at, link.rotation.out(shift)), link.at, DUST)
     moments = carried(link.moments, Rotation(), vector.negate(shift))
     return replace(link, at=at, moments=moments)
