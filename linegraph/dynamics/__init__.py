@@ -1,6 +1,6 @@
-"""The principle of orthogonality, over any algebra.
+"""The principle of orthogonality, over any algebra: equations of motion at a state.
 
-M and h (`mass_matrix`, `orthogonality`, `composite_bias`), what acts (`applied_forces`), constraints from
-chords (`chords`), every variable of every edge (`edge_variables`), networks in the whole (`network_state`,
-`whole_system`).
+M and h (`mass_matrix`, `orthogonality`, `composite_bias`), applied forces (`applied_forces`),
+constraints from chords (`chords`), all variables of all edges (`edge_variables`), networks coupled to
+mechanics (`network_state`, `whole_system`). `equations` puts them together.
 """

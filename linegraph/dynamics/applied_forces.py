@@ -1,4 +1,4 @@
-"""Forces that elements and loads exert on links and along joints, and the efforts of joints."""
+"""Wrenches of force elements and loads on links, their generalised forces in joints, and joint efforts."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Applied:
-    """What acts on a tree besides gravity and joint efforts.
+    """Forces on a tree besides gravity and joint efforts.
 
     Attributes:
-        wrenches: for each link (force, torque about its origin), in its working axes.
-        efforts: along each velocity.
-        potential: energy stored in springs.
+        wrenches: for each link force (N) and torque about its origin (N m), in its working axes.
+        efforts: generalised forces that act in joints, along each velocity (N m or N).
+        potential: energy stored in springs (J).
     """
 
     wrenches: list[tuple[Vector, Vector]]
@@ -42,17 +42,28 @@ class Applied:
     potential: Scalar = 0
 
 
-def depends_on_inputs(model: System, values: Sequence[Any]) -> bool:
-    """Whether a law names an input: then it belongs to Q, otherwise to the bias."""
-    inputs = {declared.name for declared in model.inputs}
+def depends_on_inputs(system: System, values: Sequence[Any]) -> bool:
+    """Whether one of some expressions names an input; its law then belongs to Q, otherwise to the bias h.
+
+    Args:
+        system: the declared inputs.
+        values: the expressions of a law, or numbers.
+    """
+    inputs = {declared.name for declared in system.inputs}
     return any(names_in(value) & inputs for value in values)
 
 
 def applied(chords: Chords, *, driven: bool, network: str | None = None) -> Applied:
-    """Evaluate the elements and loads that depend on inputs (`driven`), or those that do not.
+    """Evaluate the elements and loads that depend on inputs, or those that do not.
 
-    Of networks the part with inputs zero, or what inputs add to that; or what `network` says. What elements
-    hold that inputs drive, too, is counted with those that they do not.
+    The potential energy of elements that inputs drive is counted with the other elements.
+
+    Args:
+        chords: the tree at the state, with the motion of all joint ends.
+        driven: True for laws that name inputs (they belong to Q), False for the others (they belong to
+            h).
+        network: part of the networks' forces to include (see `network_state`); by default that driven
+            by inputs, or the rest, to match `driven`.
 
     Raises:
         ModelError: a law names something that does not exist.
@@ -75,16 +86,16 @@ def exerted(
     part: str,
     storing: Sequence[Element | PointForce] = (),
 ) -> Applied:
-    """What some elements and loads do, and the networks.
+    """Forces of given elements and loads, and of the networks.
 
     Args:
-        chords: the links, where they are, and how chords move.
+        chords: the tree at the state, with the motion of all joint ends.
         elements: those that act.
-        part: which part of a network's forces is meant; see `network_state`.
-        storing: those of which only the potential energy counts.
+        part: the part of the networks' forces to include; see `network_state`.
+        storing: elements of which only the potential energy counts.
 
     Raises:
-        ModelError: a law names something that does not exist, or has no value there.
+        ModelError: a law names something that does not exist or has no value there.
     """
     acting = _Acting(ForceLaws(chords, part=part))
     for element in storing:
@@ -94,11 +105,11 @@ def exerted(
 
 
 def efforts(chords: Chords, actions: Sequence[Scalar]) -> list[Scalar]:
-    """Q of the joints' efforts: at their own velocity, or projected where the joint is not the branch.
+    """Generalised forces Q with the joints' efforts: at their own velocity, or projected from a chord.
 
     Args:
-        chords: the links, where they are, and how chords move.
-        actions: what acts along each velocity besides (N m or N).
+        chords: the tree at the state, with the motion of all joint ends.
+        actions: other generalised forces along each velocity (N m or N), to which efforts are added.
     """
     tree, algebra = chords.state.tree, chords.state.algebra
     total = list(actions)
@@ -121,7 +132,7 @@ def efforts(chords: Chords, actions: Sequence[Scalar]) -> list[Scalar]:
 
 
 class _Acting:
-    """Gathers what elements and loads do: forces and torques on links, efforts along joints, energy."""
+    """Collects wrenches on links, generalised forces in joints, and energy."""
 
     def __init__(self, laws: ForceLaws) -> None:
         self._laws = laws
@@ -133,14 +144,14 @@ class _Acting:
         self._potential: Scalar = 0
 
     def of(self, elements: Sequence[Element | PointForce]) -> Applied:
-        """All of them."""
+        """Evaluate all elements and loads, then the forces of the networks on their own states."""
         for element in elements:
             set_label(self._algebra, f"{element.kind} {element.name}")
             try:
                 self._take(element)
             except ModelError as error:
                 if isinstance(element, NetworkForce) and error.thing:
-                    raise  # it names the component
+                    raise  # the error already names the component
                 raise ModelError(f'{element.kind} "{element.name}"', error.problem) from None
             except ZeroDivisionError:
                 problem = "division by zero: a value that is divided by is zero"
@@ -183,7 +194,7 @@ class _Acting:
         self._store(element, x)
 
     def _push(self, at: tuple[int, GroundFrame], force: Vector, torque: Vector = ZERO) -> None:
-        """Apply a force and a torque in ground axes to a point of a link."""
+        """Apply a force (N) and a torque (N m), both in ground axes, at a point of a link."""
         link, point = at
         if link < 0:
             return
@@ -194,7 +205,7 @@ class _Acting:
         self._wrenches[link] = (add(known[0], into(force)), add(known[1], into(torque)))
 
     def hold(self, element: Element) -> None:
-        """Count an element's potential energy alone."""
+        """Count an element's potential energy only."""
         if potentials.holds(self._tree.system, element):
             self._store(element, self._laws.measured(element))
 

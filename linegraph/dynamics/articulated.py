@@ -1,12 +1,15 @@
-"""Forward dynamics without a mass matrix: articulated inertias, in a number of operations linear in n.
+"""Forward dynamics without a mass matrix: articulated inertias, with a cost linear in n.
 
-H with a factorisation inside: on the way from the leaves to the root each joint's freedom is eliminated
-from what is passed on, so the parent sees only the inertia that cannot give way (Featherstone 1983).
-Seen from a link's origin, forces follow by
+This is H with a factorisation inside: on the way from the leaves to the root each joint's freedom is
+eliminated from the inertia that is passed on, so the parent carries only the part that cannot give way
+[Featherstone 2008, sec. 7.3]. About a link's origin the articulated inertia relates forces to
+accelerations by
 
-    n = A α + B a + n0        f = B^T α + C a + f0
+    n = A α + B a + n0        f = Bᵀ α + C a + f0
 
-from the accelerations (α, a) that v̇ causes; what a link does at v̇ = 0 is in (n0, f0), gravity included.
+with the accelerations (α, a) that v̇ causes; the inertia forces at v̇ = 0, gravity included, are in
+(n0, f0). Whether this or a factored mass matrix takes fewer operations depends on the tree, so
+`programs.register` counts both.
 """
 
 from __future__ import annotations
@@ -33,23 +36,38 @@ if TYPE_CHECKING:
 
 
 class Articulated(NamedTuple):
-    """The 6 x 6 symmetric map from (α, a) to (n, f): blocks A, B (not symmetric), C."""
+    """Articulated inertia: the symmetric 6 x 6 map from (α, a) to (n, f), about a link's origin.
+
+    Attributes:
+        a: rotational block A, symmetric (kg m²).
+        b: coupling block B, not symmetric (kg m).
+        c: translational block C, symmetric (kg); not m times the unit matrix once a freedom is
+            eliminated.
+    """
 
     a: Inertia
     b: Matrix
     c: Inertia
 
     def apply(self, angular: Vector, linear: Vector) -> tuple[Vector, Vector]:
-        """(n, f) of accelerations (α, a)."""
+        """Torque and force for given accelerations: ``n = A α + B a``, ``f = Bᵀ α + C a``.
+
+        Args:
+            angular: α (rad/s²).
+            linear: a, of the origin (m/s²).
+
+        Returns:
+            Torque about the origin (N m) and force (N), in this order.
+        """
         b = self.b
         torque = add(applied_to(self.a, angular), vector.times(b, linear))
         force = add(vector.times(vector.transpose(b), angular), applied_to(self.c, linear))
         return torque, force
 
     def without(self, freed: Freed) -> Articulated:
-        """Less the part that one freedom yields: ``I - U U^T / D`` with U = (torque, force).
+        """The rest after one freedom has been eliminated: ``I - U Uᵀ / D`` with U = (torque, force).
 
-        What the rest does along that freedom is then exactly zero.
+        Applied to a motion along that freedom, the rest gives exactly zero.
         """
         (torque, force), inverse = freed.response, freed.inverse
         n = vector.scale(inverse, torque)
@@ -59,7 +77,14 @@ class Articulated(NamedTuple):
         return rest if freed.along is None else rest.free_along(*freed.along)
 
     def free_along(self, turn: int | None, shift: int | None) -> Articulated:
-        """With zeros where a coordinate axis is free to turn about, or to shift along."""
+        """The map with exact zeros along a coordinate axis that is free.
+
+        Subtraction would leave rounding there, and non-zero nodes in the DAG.
+
+        Args:
+            turn: axis (0, 1, 2) that the joint turns about; None if it does not turn.
+            shift: axis that it slides along; None if it does not slide.
+        """
         a, b, c = square(self.a), self.b, square(self.c)
         if turn is not None:
             a, b = _cleared(a, turn, rows=True, columns=True), _cleared(b, turn, rows=True)
@@ -68,13 +93,13 @@ class Articulated(NamedTuple):
         return Articulated(_upper(a), b, _upper(c))
 
     def turned(self, rotation: Rotation) -> Articulated:
-        """Seen in outer axes."""
+        """The map in the axes of the parent."""
         return Articulated(
             rotation.congruence(self.a), rotation.similarity(self.b), rotation.congruence(self.c)
         )
 
     def shifted(self, at: Vector) -> Articulated:
-        """Seen from an outer origin."""
+        """The map about the parent's origin, `at` being the vector from there to this one (m)."""
         outer = _plus(self.b, _crossed(at, square(self.c)))
         # A' = A + [r] B^T - B' [r], the last by rows: (x B'[r])_i = B'_i x r
         moved = _plus(square(self.a), _crossed(at, vector.transpose(self.b)))
@@ -82,27 +107,27 @@ class Articulated(NamedTuple):
         return Articulated(_upper(full), outer, self.c)  # type: ignore[arg-type]
 
     def joined(self, other: Articulated) -> Articulated:
-        """Two maps added."""
+        """The sum of two maps about the same origin and in the same axes."""
         a = tuple(x + y for x, y in zip(self.a, other.a, strict=True))
         c = tuple(x + y for x, y in zip(self.c, other.c, strict=True))
         return Articulated(a, _plus(self.b, other.b), c)
 
 
 def rigid(moments: Moments) -> Articulated:
-    """The map of a single rigid body: n = J α + b x a, f = α x b + m a."""
+    """The map of a single rigid body about its origin: n = J α + b x a, f = α x b + m a."""
     m, (x, y, z), *_ = moments
     return Articulated(moments.inertia, ((0, -z, y), (z, 0, -x), (-y, x, 0)), (m, 0, 0, m, 0, m))
 
 
 class Freed(NamedTuple):
-    """One freedom of a joint, eliminated.
+    """One freedom of a joint after its elimination.
 
     Attributes:
-        response: torque and force that its unit acceleration asks for, in this order.
-        inverse: of the pivot.
-        net: what its effort leaves to accelerate it, divided by the pivot.
-        along: the coordinate axes it turns about and shifts along, where it is one and nothing moves with it
-            but the link.
+        response: torque (N m) and force (N) for its unit acceleration, in this order.
+        inverse: of the pivot D = sᵀ I s, plus an armature if there is one.
+        net: its effort less the bias force along it, divided by the pivot (rad/s² or m/s²).
+        along: the coordinate axes that it turns about and slides along, if the freedom is one such axis
+            and has no armature; these entries then become exact zeros.
     """
 
     response: tuple[Vector, Vector]
@@ -116,9 +141,17 @@ def forward_dynamics(
     efforts: Sequence[Scalar],
     armatures: Mapping[int, Scalar] | None = None,
 ) -> Solution:
-    """v̇ for the generalised forces `efforts` along v; joints must not be coupled.
+    """Accelerations v̇ of a tree for given generalised forces, by articulated inertias.
 
-    `armatures` are what moves with a velocity alone, as a rotor behind its gear does: they add to its pivot.
+    Args:
+        state: the tree at (q, v); no two joints may share a velocity, and no orientation may be
+            measured from ground.
+        efforts: generalised forces along v (N m or N).
+        armatures: inertia that moves with one velocity alone, such as a rotor behind its gear, by
+            velocity; it is added to the pivot (kg m² or kg).
+
+    Returns:
+        v̇, and the pivots, which are positive if M is positive definite.
     """
     tree, arms = state.tree, state.arms
     pivots: list[Scalar] = [0] * len(tree.velocities)
@@ -146,7 +179,7 @@ def forward_dynamics(
 def _free(
     body: Articulated, wrench: Wrench, arm: Arm, a: int, effort: Scalar, beside: Scalar
 ) -> tuple[Scalar, Freed]:
-    """The pivot of a freedom, and what eliminating it leaves."""
+    """The pivot of a freedom, and the quantities that its elimination needs."""
     s, u = arm.motion.angular[a], arm.motion.linear[a]
     force, torque = wrench
     n, f = body.apply(s, u)
@@ -162,7 +195,7 @@ def _free(
 
 
 def _passed_on(wrench: Wrench, freed: Freed, arm: Arm, a: int, effort: Scalar) -> Wrench:
-    """Force and torque with a freedom's own acceleration in them; along it just the effort is left."""
+    """Wrench that a link passes on, with a freedom's own acceleration; along the freedom it is the effort."""
     n, f = freed.response
     force = list(add(wrench[0], vector.scale(freed.net, f)))
     torque = list(add(wrench[1], vector.scale(freed.net, n)))
@@ -175,9 +208,9 @@ def _passed_on(wrench: Wrench, freed: Freed, arm: Arm, a: int, effort: Scalar) -
 
 
 def _accelerations(state: TreeState, freed: list[list[Freed]]) -> list[Scalar]:
-    """From the root to the leaves: each freedom answers the acceleration that reaches it.
+    """Accelerations from the root to the leaves, each freedom responding to that of its near link.
 
-    What accelerates without v̇ is in the forces, so ground does not.
+    Accelerations that do not depend on v̇ are part of the forces, so ground does not accelerate here.
     """
     tree = state.tree
     result: list[Scalar] = [0] * len(tree.velocities)
@@ -190,7 +223,7 @@ def _accelerations(state: TreeState, freed: list[list[Freed]]) -> list[Scalar]:
             outer, origin = reached[link.parent]
             inner = arm.rotation.into(outer)
             incoming = arm.rotation.into(add(origin, cross(outer, arm.at)))
-        # a freedom eliminated later passes its own acceleration to those before it
+        # elimination in reverse: the freedom eliminated last accelerates first, and moves those before it
         for a in reversed(range(len(link.velocities))):
             k, (response, inverse, net, _) = link.velocities[a].index, freed[i][a]
             n, f = response

@@ -1,14 +1,15 @@
-"""Chords: what a tree leaves out comes back as constraints, by the circuit equations.
+"""Chords: the edges that a tree leaves out become constraints, by the circuit equations.
 
-The circuit that a chord closes says how its ends move against each other; projected on the chord's reaction
-directions, where its across variable is known and its through variable is not, that is a constraint, and
-the through variable its multiplier:
+The circuit that a chord closes gives the relative motion of its ends. Projected on the chord's reaction
+directions, where the across variable is known and the through variable is not, this is a constraint,
+with the through variable as its multiplier:
 
-    φ(q, t) = 0        J v = b        J v̇ = γ        M v̇ + h = Q + J^T λ
+    φ(q, t) = 0        J v = b        J v̇ = γ        M v̇ + h = Q + Jᵀ λ
 
-One formula tells all of it: a *row* is a unit force and torque (f, m) between tail and head. By
-orthogonality its product with the relative motion is the constraint, c = f . u + m . w - b, its projection on
-the tree's velocities is the row of J, and the derivative of c at v̇ = 0 is -γ.
+All four follow from one formula per constraint. A *row* is a unit force and torque (f, m) between tail
+and head. By orthogonality its product with the relative motion is the constraint, c = f·u + m·ω - b,
+its projection on the velocities of the tree is the row of J, and the derivative of c at v̇ = 0 is -γ.
+Closed loops as constraints on a tree: [Featherstone 2008, ch. 8].
 """
 
 from __future__ import annotations
@@ -60,13 +61,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ChordEquation:
-    """One constraint, before a state is known.
+    """One constraint, independent of the state.
 
     Attributes:
-        multiplier: its multiplier.
-        component: the chord's name.
+        multiplier: name and unit of its multiplier (N or N m for joints).
+        component: name of the chord or relation.
         place: which of the chord's rows it is.
-        holonomic: whether it has an equation of position.
+        holonomic: whether it has an equation of position φ.
     """
 
     multiplier: Quantity
@@ -76,7 +77,7 @@ class ChordEquation:
 
 
 def equations(tree: KinematicTree) -> list[ChordEquation]:
-    """All constraints: first those with an equation of position, each in declared order."""
+    """All constraints in the order of J's rows: first the holonomic ones, each group in declared order."""
     found = [
         ChordEquation(quantity, closure.component.name, k, holonomic)
         for closure in tree.closures
@@ -87,14 +88,14 @@ def equations(tree: KinematicTree) -> list[ChordEquation]:
 
 
 class Chords:
-    """The constraints of a tree at a state, over any algebra.
+    """The constraints of a tree at a state, over any algebra; computed on demand.
 
     Args:
-        state: the links and where they are.
+        state: the tree at (q, v).
     """
 
     def __init__(self, state: TreeState) -> None:
-        """Nothing is calculated before it is asked for."""
+        """Keep the state; frames and rows are computed when they are first needed."""
         self.state = state
         self._tree = state.tree
         self._algebra = state.algebra
@@ -102,7 +103,7 @@ class Chords:
 
     @cached_property
     def frames(self) -> list[GroundFrame]:
-        """The links in ground axes, accelerations at v̇ = 0."""
+        """The working frames of all links in ground axes, with accelerations at v̇ = 0."""
         return frames(self.state)
 
     @cached_property
@@ -112,19 +113,19 @@ class Chords:
         return dict(zip(names, relations(self.state), strict=True))
 
     def ends(self, name: str) -> tuple[GroundFrame, GroundFrame]:
-        """Tail and head of a joint or constraint, in aligned axes."""
+        """Tail and head frame of a joint or constraint in ground axes, aligned with its axis."""
         if name not in self._ends:
             end = self._tree.ends[name]
             self._ends[name] = (seated(self.frames, end.tail), seated(self.frames, end.head))
         return self._ends[name]
 
     def seen(self, name: str) -> tuple[Matrix, Vector]:
-        """Head from tail of a joint: rotation, and displacement in the tail's axes."""
+        """Pose of a joint's head relative to its tail: rotation, and displacement in the tail's axes (m)."""
         return seen(*self.ends(name))
 
     @cached_property
     def rows(self) -> dict[str, tuple[ReactionRow, ...]]:
-        """The rows of each chord."""
+        """The reaction rows of each chord, by its name."""
         found = {}
         for closure in self._tree.closures:
             set_label(self._algebra, f"chord {closure.component.name}")
@@ -135,11 +136,11 @@ class Chords:
         return found
 
     def position(self) -> list[Scalar]:
-        """φ(q, t), one for each constraint that has one."""
+        """Residuals φ(q, t) of the holonomic constraints (m, rad or pure numbers)."""
         return [self.rows[e.component][e.place].position for e in self.equations if e.holonomic]
 
     def jacobian(self) -> list[list[Scalar]]:
-        """J, constraints x velocities."""
+        """Jacobian J(q, t), constraints x velocities."""
         size = len(self._tree.velocities)
         closures = {closure.component.name: closure for closure in self._tree.closures}
         found = []
@@ -159,11 +160,15 @@ class Chords:
         return found
 
     def along(self, pair: Pair) -> Any:
-        """What a force and a torque between two links do along the velocities."""
+        """Generalised forces of opposite wrenches on two links, as (freedom, force) pairs."""
         return along_velocities(self.state, self.frames, pair)
 
     def rates(self) -> list[Scalar]:
-        """J v - b, from the motion of the ends itself, which also says what is prescribed."""
+        """Residuals ``J v - b`` of the constraints of velocity.
+
+        They are computed from the motion of the chords' ends, which contains prescribed motions of
+        branches; J times v alone does not.
+        """
         found = []
         for equation in self.equations:
             if equation.component in self._relations:
@@ -177,7 +182,7 @@ class Chords:
         return found
 
     def bias(self) -> list[Scalar]:
-        """γ of J v̇ = γ."""
+        """Right-hand side γ of the constraints of acceleration, ``J v̇ = γ``."""
         known: dict[str, list[Scalar]] = {name: [r[2]] for name, r in self._relations.items()}
         for closure in self._tree.closures:
             name = closure.component.name
@@ -186,7 +191,16 @@ class Chords:
         return [known[e.component][e.place] for e in self.equations]
 
     def effort(self, closure: Closure, efforts: Sequence[Scalar]) -> Pair:
-        """The force and torque on its head of efforts along the velocities of a joint that is a chord."""
+        """Wrench on the head of a joint that is a chord, for efforts along its velocities.
+
+        Args:
+            closure: the joint.
+            efforts: one per velocity of the joint (N m or N); positive efforts drive the head in the
+                positive direction.
+
+        Returns:
+            Force and torque about the head's origin in ground axes, with the links that they act on.
+        """
         joint: Any = closure.component
         tail, head = self.ends(joint.name)
         force = torque = ZERO
@@ -195,7 +209,7 @@ class Chords:
         return Pair(force, torque, head.origin, closure.head.link, closure.tail.link)
 
     def coordinates(self, closure: Closure) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
-        """The coordinates and velocities of a joint that is a chord."""
+        """The coordinates and velocities of a joint that is a chord, measured from the motion of its ends."""
         joint: Any = closure.component
         tail, head = self.ends(joint.name)
         u, w = relative_motion(tail, head)
@@ -204,9 +218,10 @@ class Chords:
         return joint.measured(self._algebra, *seen(tail, head)), rates
 
     def named(self, closure: Closure) -> dict[str, Scalar]:
-        """What laws may name of a joint that is a chord: its coordinates x and their rates ``der(x)``.
+        """Names that laws may use for a joint that is a chord: coordinates x and rates ``der(x)``.
 
-        Of a quaternion there is no formula; the position beside it is the displacement of the ends.
+        A quaternion cannot be measured by a formula, so a free joint offers its position only: the
+        displacement of its ends.
         """
         joint: Any = closure.component
         tail, head = self.ends(joint.name)
@@ -225,7 +240,7 @@ class Chords:
 
     @cached_property
     def equations(self) -> list[ChordEquation]:
-        """The constraints: first those with an equation of position."""
+        """All constraints in the order of J's rows, the holonomic ones first."""
         return equations(self._tree)
 
     def _pair(self, closure: Closure, row: ReactionRow) -> Pair:
@@ -233,7 +248,7 @@ class Chords:
         return Pair(row.force, row.torque, origin, closure.head.link, closure.tail.link)
 
     def _derived(self, closure: Closure, tail: GroundFrame, head: GroundFrame) -> list[Scalar]:
-        """-d/dt (f . u + m . w - b) at v̇ = 0, the row's own derivative by calculating with jets."""
+        """``-d/dt (f·u + m·ω - b)`` at v̇ = 0; the rows are differentiated by evaluating them with jets."""
         jets = Jets(self._algebra)
         base = self._tree.resolve
         drive = [None if x is None else Prescribed(x, Jet(x.dx, x.ddx, 0)) for x in closure.drive]
@@ -279,7 +294,7 @@ def _quantities(closure: Closure) -> list[tuple[Quantity, bool]]:
 def _duals(
     algebra: Algebra, joint: Joint, tail: GroundFrame, head: GroundFrame
 ) -> list[tuple[Vector, Vector]]:
-    """A joint's unit efforts in ground axes: (torque, force)."""
+    """A joint's unit efforts as (torque, force) in ground axes."""
     duals = joint.duals(algebra, *seen(tail, head))
     return [(times(head.rotation, m), times(head.rotation, f)) for m, f in duals]
 
@@ -296,6 +311,6 @@ def _jets(a: Vector, da: Vector) -> Vector:
 
 
 def _split(a: Vector) -> tuple[Vector, Vector]:
-    """A vector of jets as values and rates."""
+    """Values and rates of a vector of jets."""
     x, y, z = (lifted(c) for c in a)
     return (x.x, y.x, z.x), (x.dx, y.dx, z.dx)

@@ -1,14 +1,16 @@
 """Sizes that make constraints comparable: the lengths of the circuits that chords close.
 
-A row of J is a unit force or a unit torque. Along a rotational velocity a unit force has its lever arm as
-entry, along a translational one a cosine; a unit torque has a cosine along a rotational velocity. Divided by
-a length L of the circuit for each force, and multiplied by L for each translation, all entries are pure
-numbers of size 1 at most, whatever the units and however large the mechanism:
+A row of J is a unit force or a unit torque. Along a rotational velocity, the entry of a unit force is
+its lever arm, along a translational one a cosine; that of a unit torque along a rotational velocity is
+a cosine. Divided by a length L of the circuit for each force, and multiplied by L for each translation,
+all entries are pure numbers of size 1 at most, whatever the units and the size of the mechanism:
 
-    J_ij size(v_j) / size(phi_i)        size = L (m) or 1 (rad)
+    J_ij size(v_j) / size(φ_i)        size = L (m) or 1 (rad)
 
-L is the sum of the arms between the joints of a circuit, each measured in the axes of its link, so that it
-does not depend on the position. Circuits that share velocities share the largest of their lengths.
+Without these sizes the rank of J, and so the number of degrees of freedom, would depend on whether
+lengths are in metres or millimetres. L is the sum of the arms between the joints of a circuit, each
+measured in the axes of its link, so that it does not depend on the position. Circuits that share
+velocities share the largest of their lengths.
 """
 
 from __future__ import annotations
@@ -29,14 +31,15 @@ if TYPE_CHECKING:
     from linegraph.kinematics.links import Closure, KinematicTree, Link
 
 SHORT = 1e-6
-"""Arms that are a smaller part than this of what the bodies measure are rounding of joints in one place."""
+"""Arms shorter than this fraction of the bodies' extent are taken as rounding: the joints coincide."""
 
 
 class ConstraintSizes(NamedTuple):
-    """What constraints and velocities are measured by.
+    """Units of measurement for constraints and velocities.
 
     Attributes:
-        constraints: for each its length (m) or 1 (rad); 0 for a relation, known by its coefficients alone.
+        constraints: for each its length (m) or 1 (rad); 0 for a relation, whose coefficients are its
+            only scale.
         velocities: for each a length (m) or 1.
     """
 
@@ -45,12 +48,12 @@ class ConstraintSizes(NamedTuple):
 
 
 class _Circuit(NamedTuple):
-    """What a chord closes.
+    """The circuit that a chord closes.
 
     Attributes:
         links: those whose joints lie in it.
-        arms: from joint to joint, each in the axes of one link.
-        own: lengths of the chord itself.
+        arms: from joint to joint, each in the axes of one link (m).
+        own: lengths of the chord itself (m).
     """
 
     links: frozenset[int]
@@ -62,8 +65,9 @@ def sizes(tree: KinematicTree, numbers: KinematicTree | None = None) -> Constrai
     """The sizes of all constraints and velocities.
 
     Args:
-        tree: the links.
-        numbers: the same in numbers, which tell whether arms are rounding; `tree` itself if left out.
+        tree: the links, over any algebra.
+        numbers: the same links over floats, to decide which arms are rounding; `tree` itself if
+            omitted.
     """
     sample = numbers or tree
     circuits, known = _circuits(tree), _circuits(sample)
@@ -88,7 +92,15 @@ def sizes(tree: KinematicTree, numbers: KinematicTree | None = None) -> Constrai
 
 
 def of_rows(J: Any, found: ConstraintSizes) -> Any:
-    """By what each row of J in numbers is to be divided: where no size is known, by its own largest entry."""
+    """Divisors of the rows of J: each constraint's size, or its largest entry if it has none.
+
+    Args:
+        J: array, constraints x velocities.
+        found: the sizes.
+
+    Returns:
+        One positive divisor per row; 1 for a row of zeros.
+    """
     import numpy as np
 
     known = np.array(found.constraints, float)
@@ -97,14 +109,19 @@ def of_rows(J: Any, found: ConstraintSizes) -> Any:
 
 
 def pure(J: Any, found: ConstraintSizes) -> Any:
-    """J in pure numbers, in which a unit direction has entries of size 1 at most."""
+    """J in pure numbers: an entry of a unit direction has size 1 at most.
+
+    Args:
+        J: array, constraints x velocities.
+        found: the sizes.
+    """
     import numpy as np
 
     return J * np.array(found.velocities, float) / of_rows(J, found)[:, None]
 
 
 def _size_of(multiplier: Quantity, length: Scalar) -> Scalar:
-    """What a constraint is measured by: that of a force by a length."""
+    """The size of a constraint: a length if its multiplier is a force, 1 if a torque, 0 if unknown."""
     sizes_of: dict[str, Scalar] = {"N": length, "N*m": 1}
     return sizes_of.get(multiplier.unit, 0)
 
@@ -137,7 +154,7 @@ def _circuit(tree: KinematicTree, closure: Closure) -> _Circuit:
 
 
 def _groups(tree: KinematicTree, circuits: Sequence[_Circuit]) -> list[list[int]]:
-    """Circuits that share velocities, directly or by others between them."""
+    """Circuits that share velocities, directly or through other circuits."""
     groups: list[tuple[set[int], list[int]]] = []
     for k, circuit in enumerate(circuits):
         shared = {f.index for link in circuit.links for f in tree.links[link].velocities}
@@ -153,7 +170,7 @@ def _groups(tree: KinematicTree, circuits: Sequence[_Circuit]) -> list[list[int]
 
 
 def _longest(algebra: Algebra, circuits: Sequence[_Circuit]) -> Scalar:
-    """The greatest length of some circuits."""
+    """The greatest length among some circuits (m)."""
     longest: Scalar = 0
     for circuit in circuits:
         parts = [*(x for arm in circuit.arms for x in arm), *circuit.own]
@@ -163,7 +180,7 @@ def _longest(algebra: Algebra, circuits: Sequence[_Circuit]) -> Scalar:
 
 
 def _extent(links: Iterable[Link]) -> float:
-    """How far the mass of links in numbers reaches from their joints: the greatest of all."""
+    """The greatest distance that the mass of some links reaches from their joints (m)."""
     reaches = [0.0]
     for link in links:
         mass, first, inertia = link.moments.mass, link.moments.first, link.moments.inertia

@@ -1,13 +1,18 @@
-"""The bias h beside the mass matrix: from composites, which M needs anyway.
+"""The bias h from composite inertias, which the mass matrix needs in any case.
 
-The accelerations of a link's points at v̇ = 0 are a field x -> a + A x. What a joint adds to the field that
-its near link has, it adds for all that it carries, so its inertia force is that of one composite:
+The accelerations of a link's points at v̇ = 0 are a field x -> a + A x. The field that a joint adds to
+that of its near link applies to everything that it carries, so its inertia force is that of one
+composite body:
 
     ΔA = [σ x][w x] + [β x]        Δa = σ x u + β'
 
-with w, u the joint's relative velocities, σ the sum of the angular velocities on its two sides and β, β' the
-rest of its relative acceleration. Of a hinge ΔA has three entries: points on its axis move with both links.
-A joint's h is then what the near link's field does to its composite, and what it and the joints beyond add.
+with w, u the joint's relative velocities, σ the sum of the angular velocities of its two links, and β,
+β' the rest of its relative acceleration. For a hinge ΔA has three entries, since points on its axis
+move with both links. A joint's part of h is the inertia force of its composite in the near link's
+field, plus those of the fields added by itself and by the joints beyond.
+
+Beside M this may take fewer operations than the pass over single links
+(`orthogonality.inverse_dynamics`), or more: `programs.workspace` counts both.
 """
 
 from __future__ import annotations
@@ -45,7 +50,15 @@ if TYPE_CHECKING:
 
 
 def bias_beside_mass(state: TreeState, acting: Applied) -> list[Scalar]:
-    """h(q, v), less what `acting` does; the composites are those of `mass_matrix`."""
+    """The bias h(q, v) less the applied forces, from the composites of `mass_matrix`.
+
+    Args:
+        state: the tree at (q, v).
+        acting: applied forces, subtracted: wrenches about the links' origins in their working axes.
+
+    Returns:
+        One generalised force per velocity (N m or N).
+    """
     tree, arms = state.tree, state.arms
     carried = composites(state)
     motions = spins(state)
@@ -70,14 +83,14 @@ def bias_beside_mass(state: TreeState, acting: Applied) -> list[Scalar]:
 
 
 class _Joint(NamedTuple):
-    """What is known at a joint, in one set of axes and about its far link's origin.
+    """A joint with the quantities at it, in one set of axes and about its far link's origin.
 
     Attributes:
-        motion: the joint's.
-        carried: the composite beyond it.
-        field: how the near link's points move there.
-        rotation: far axes to near axes.
-        near: whether the axes are the near link's; else they are the far link's.
+        motion: the joint's motion.
+        carried: the moments of the composite beyond it.
+        field: the motion of the near link's points there.
+        rotation: from far axes to near axes.
+        near: whether the axes are those of the near link, not the far one.
     """
 
     motion: Motion
@@ -87,7 +100,7 @@ class _Joint(NamedTuple):
     near: bool
 
     def passed_on(self, far: Wrench, own: Wrench) -> Wrench:
-        """The sum of a wrench in far axes and one in the joint's, in near axes."""
+        """The sum of a wrench in far axes and one in the joint's axes, in near axes."""
         out = self.rotation.out
         if self.near:
             return together((out(far[0]), out(far[1])), own)
@@ -96,7 +109,7 @@ class _Joint(NamedTuple):
 
 
 def _at_joint(arm: Arm, near: Spin, composite: Moments) -> _Joint:
-    """A joint in near axes where its directions are constant there: a link at the end needs no others."""
+    """A joint in near axes if its directions are constant there: a leaf link then needs no others."""
     pull = add(near.linear, accelerated(near, arm.at))
     rotation, motion = arm.rotation, arm.motion
     seen = seen_near(arm)
@@ -110,7 +123,7 @@ def _at_joint(arm: Arm, near: Spin, composite: Moments) -> _Joint:
 
 
 def _added(composite: Moments, here: Crossing) -> Wrench:
-    """Force and torque about a link's origin of what its joint adds to the accelerations beyond it."""
+    """Wrench about a link's origin of the acceleration field that its joint adds beyond it."""
     mass, first, second, _ = composite
     w, sums = here.turning, add(here.before, here.velocity)
     field = _turning(w, sums)
@@ -122,7 +135,7 @@ def _added(composite: Moments, here: Crossing) -> Wrench:
 
 
 def _turning(w: Vector, sums: Vector) -> Matrix:
-    """``[σ x][w x] = w σ^T - (w . σ) 1``."""
+    """``[σ x][w x] = w σᵀ - (w·σ) 1``."""
     x, y, z = (w[k] * sums[k] for k in range(3))
     return (
         (-(y + z), w[0] * sums[1], w[0] * sums[2]),

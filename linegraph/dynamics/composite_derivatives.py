@@ -1,21 +1,25 @@
-"""Derivatives of inverse dynamics from composites: what a joint changes, it changes for all that it carries.
+"""Derivatives of inverse dynamics from composites: a joint moves all that it carries as one body.
 
-If one freedom of a joint, turning s and shift k in far axes, moves a little, its far side moves on as one:
-seen from there the near side moves otherwise. With w', e', a' the near side's angular velocity and
-acceleration and the acceleration of its point at the joint's origin, w and u the joint's relative velocities,
+If one freedom of a joint, turning s and shift k in far axes, moves a little, its far side moves on as
+one; seen from there it is the near side that moves differently. With w', e', a' the near side's angular
+velocity and acceleration and the acceleration of its point at the joint's origin, w and u the joint's
+relative velocities,
 
     by q    dw = w' x s    η = e' x s - dw x w'      α = a' x s + e' x k + w' x (w' x k) + 2 dw x u
     by v    dw = s         η = 2 w' x s + w x s      α = (2 w' + w) x k + s x u
 
-and each point r of what is carried, of velocity V, gets the acceleration α + η x r + 2 dw x V. The force that
-takes is one of the composite, linear in (α, η, dw): its moments m, b, J, its momentum P and the moments of
-velocity G = ∫ V r^T dm,
+and each carried point r, of velocity V, gets the acceleration α + η x r + 2 dw x V. The force for it is
+that of one composite, linear in (α, η, dw): with its moments m, b, J, its momentum P and the moments of
+velocity G = ∫ V rᵀ dm,
 
     f = m α + η x b + 2 dw x P        n = b x α + J η + 2 (tr G - G) dw
 
-Joints further in feel it, and that all forces turn with s and shift with k; joints further out are felt by
-the transpose of the same, carried inward as the columns of M are. Velocities V may leave out a common one:
-they are those seen from the root's origin.
+Joints further in receive this force; besides, all forces turn with s and shift with k. Joints further
+out are affected by the transpose of the same map, carried inward as the columns of M are. A common
+velocity may be subtracted from all V: they are taken relative to the root's origin.
+
+[Carpentier and Mansard 2018] obtain the same derivatives by differentiating the recursive Newton-Euler
+algorithm.
 """
 
 from __future__ import annotations
@@ -53,7 +57,7 @@ Rows = list[list["Scalar"]]
 
 
 class TorqueDerivatives(NamedTuple):
-    """∂τ/∂d, ∂τ/∂v and ∂τ/∂a = M of mechanics, n x n."""
+    """∂τ/∂d, ∂τ/∂v and ∂τ/∂a = M of mechanics, n x n; d are changes of q along the velocities."""
 
     by_change: Rows
     by_velocity: Rows
@@ -61,7 +65,7 @@ class TorqueDerivatives(NamedTuple):
 
 
 def has_slopes(state: TreeState) -> bool:
-    """Whether every freedom is a turn and a shift that do not change in far axes."""
+    """Whether every freedom is a turn and a shift that are constant in far axes, as `slopes` requires."""
     if state.tree.levelled:
         return False
     for arm in state.arms:
@@ -78,7 +82,15 @@ def _constant(x: Scalar) -> bool:
 
 
 def slopes(state: TreeState, a: Sequence[Scalar]) -> TorqueDerivatives:
-    """The derivatives of ``M a + h`` without what acts, for a tree of which `has_slopes` is true."""
+    """The derivatives of ``τ = M a + h`` without applied forces.
+
+    Args:
+        state: the tree at (q, v), for which `has_slopes` is true.
+        a: the accelerations v̇ (rad/s², m/s²).
+
+    Returns:
+        Three matrices, one row per generalised force and one column per change.
+    """
     tree = state.tree
     size = len(tree.velocities)
     found = TorqueDerivatives(*([[0] * size for _ in range(size)] for _ in range(3)))
@@ -99,7 +111,7 @@ def slopes(state: TreeState, a: Sequence[Scalar]) -> TorqueDerivatives:
 
 
 class _Momentum(NamedTuple):
-    """Twice the velocities of what a joint carries: of its origin, and the moments ∫ V dm and ∫ V r^T dm."""
+    """Twice the velocity of what a joint carries: of its origin, and the moments ∫ V dm and ∫ V rᵀ dm."""
 
     velocity: Vector
     first: Vector
@@ -107,7 +119,7 @@ class _Momentum(NamedTuple):
 
 
 class _Step(NamedTuple):
-    """What one freedom changes: turning, shift, and (dw, η, α) by q and by v."""
+    """One freedom: its turning and shift, and the changes (dw, η, α) by q and by v."""
 
     s: Vector
     k: Vector
@@ -116,7 +128,7 @@ class _Step(NamedTuple):
 
 
 def _seen(arm: Arm, near: Spin) -> Spin:
-    """How the near link moves at the joint's origin, in far axes."""
+    """Motion of the near link's point at the joint's origin, in far axes."""
     into = arm.rotation.into
     pull = add(near.linear, accelerated(near, arm.at))
     return Spin(into(near.velocity), into(near.angular), into(pull))
@@ -127,7 +139,7 @@ def _step(arm: Arm, k: int, near: Spin, velocity: Vector) -> _Step:
     w = vector.combine(arm.rates, arm.motion.angular)
     u = vector.combine(arm.rates, arm.motion.linear)
     turn = cross(near.velocity, s)
-    # velocities are seen from the root: less 2 dw x that of the origin
+    # momenta are relative to the root's velocity: subtract 2 dw x the velocity of the origin
     moving = cross(turn, subtract(scale(2, u), velocity))
     change = (
         turn,
@@ -144,7 +156,7 @@ def _step(arm: Arm, k: int, near: Spin, velocity: Vector) -> _Step:
 
 
 def _momenta(state: TreeState) -> list[_Momentum]:
-    """Of all that each joint carries, velocities seen from the origin of its root."""
+    """The momentum of all that each joint carries, velocities relative to the origin of its root."""
     tree, arms = state.tree, state.arms
     turning = [scale(2, spin.velocity) for spin in spins(state)]
     found: list[_Momentum] = []
@@ -156,7 +168,7 @@ def _momenta(state: TreeState) -> list[_Momentum]:
             own = scale(2, vector.combine(arm.rates, arm.motion.linear))
             v = add(arm.rotation.into(inner), own)
         mass, first, second, _ = arm.moments
-        # of what moves in a plane only the trace counts, to which turning adds nothing
+        # in plane motion only tr G matters, and [ω x] S adds nothing to it: S is symmetric
         tensor = square((0,) * 6 if link.in_plane else second)
         spread = _product(skew(turning[i]), tensor)
         moved = tuple(
@@ -186,7 +198,7 @@ def _product(a: Matrix, b: Matrix) -> Matrix:
 
 
 def _transmitted(state: TreeState, a: Sequence[Scalar]) -> list[Wrench]:
-    """Force and torque in every joint."""
+    """Force and torque transmitted by every joint, about its link's origin."""
     forces = inertia_forces(state, a)
     for i in reversed(range(len(forces))):
         link = state.tree.links[i]
@@ -200,7 +212,7 @@ def _transmitted(state: TreeState, a: Sequence[Scalar]) -> list[Wrench]:
 def _response(
     composite: Moments, momentum: _Momentum, change: tuple[Vector, Vector, Vector]
 ) -> Wrench:
-    """The force and torque that a change (dw, η, α) of the near side takes."""
+    """Force and torque of a composite for a change (dw, η, α) of the near side."""
     dw, angular, linear = change
     mass, first, *_ = composite
     force = add(scale(mass, linear), cross(angular, first))
@@ -222,7 +234,7 @@ def _inward(
     known: tuple[Moments, _Momentum, Wrench],
     found: TorqueDerivatives,
 ) -> None:
-    """The columns of a link's freedoms: its own rows, and those of all joints further in."""
+    """The columns of a link's freedoms: rows of the joint itself, and of all joints further in."""
     composite, momentum, (force, torque) = known
     tree, arms = state.tree, state.arms
     link = tree.links[i]
@@ -285,6 +297,6 @@ def _outward(
 
 
 def _contribute(rows: Rows, row: Freedom, column: Freedom, entry: Scalar) -> None:
-    """Add a product of freedoms; coupled ones meet."""
+    """Add a product of two freedoms; coupled ones may share an entry."""
     value = (row.ratio * column.ratio) * entry
     rows[row.index][column.index] = rows[row.index][column.index] + value

@@ -1,4 +1,4 @@
-"""Edges of the system graph with both their variables, and what they are called."""
+"""Edges of the system graph with both of their variables, and the names of these in emitted code."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ XYZ = "xyz"
 
 
 class Wrench(NamedTuple):
-    """A force and a torque about a point, in ground axes."""
+    """A force (N) and a torque about a point (N m), in ground axes."""
 
     force: Vector
     torque: Vector
@@ -29,11 +29,16 @@ class Wrench(NamedTuple):
         return Wrench(add(self.force, other.force), add(self.torque, other.torque))
 
     def turned(self) -> Wrench:
-        """The reaction."""
+        """The reaction: the opposite force and torque, about the same point."""
         return Wrench(negate(self.force), negate(self.torque))
 
     def about(self, old: Vector, new: Vector) -> Wrench:
-        """The same about another point."""
+        """The same wrench about another point.
+
+        Args:
+            old: the point that the torque is about, from the origin of ground (m).
+            new: the point that it shall be about.
+        """
         return Wrench(self.force, add(self.torque, cross(subtract(old, new), self.force)))
 
 
@@ -41,13 +46,13 @@ NOTHING = Wrench(ZERO, ZERO)
 
 
 class EdgeVariables(NamedTuple):
-    """What an edge does: through and across variables in ground axes, and the lever of its force.
+    """Through and across variables of an edge in ground axes, and the lever of its force.
 
     Attributes:
-        through: on its head, about the head's origin.
-        linear, angular: velocity and angular velocity of the head less those of the tail.
-        lever: torque on the tail that the force's offset from it makes.
-        turning: the angular velocity of the tail.
+        through: force and torque on its head, about the head's origin.
+        linear, angular: velocity (m/s) and angular velocity (rad/s) of the head less those of the tail.
+        lever: torque on the tail from the offset of the force's line of action (N m).
+        turning: angular velocity of the tail, across which the lever acts (rad/s).
     """
 
     through: Wrench
@@ -58,7 +63,15 @@ class EdgeVariables(NamedTuple):
 
 
 def powers(edges: Mapping[str, EdgeVariables]) -> tuple[dict[str, Scalar], tuple[Scalar, Scalar]]:
-    """Through times across of every edge, and the sums of translation and of rotation, which are zero."""
+    """The power of every edge, through times across, and the sums over each mechanical subspace (W).
+
+    Args:
+        edges: all edges of the system graph, by name.
+
+    Returns:
+        The powers by ``edge.translation``, ``edge.rotation`` and ``edge.lever``; then the sums over
+            translation and over rotation with levers, both zero by the principle of orthogonality.
+    """
     found: dict[str, Scalar] = {}
     translation: Scalar = 0
     rotation: Scalar = 0
@@ -74,7 +87,16 @@ def powers(edges: Mapping[str, EdgeVariables]) -> tuple[dict[str, Scalar], tuple
 def network_powers(
     network: Network | None, found: Mapping[str, tuple[Scalar, Scalar]]
 ) -> tuple[dict[str, Scalar], dict[str, Scalar]]:
-    """The power that each edge of a network delivers, and its sum in each subspace that has a power: zero."""
+    """The power that each edge of a network delivers, and its sum in each subspace: zero.
+
+    Args:
+        network: the scalar networks; None if there are none.
+        found: across and through variable of each edge.
+
+    Returns:
+        The powers by edge (W), positive if the edge delivers power; then the sums by domain. Edges of
+            domains whose product is no power, such as heat, are left out.
+    """
     powers_: dict[str, Scalar] = {}
     sums: dict[str, Scalar] = {}
     for branch in network.branches if network is not None else ():
@@ -87,13 +109,19 @@ def network_powers(
     return powers_, sums
 
 
-def network_quantities(model: System, network: Network | None, place: int) -> list[Quantity]:
-    """What the across (0) or the through (1) variables of a network's edges are called."""
+def network_quantities(system: System, network: Network | None, place: int) -> list[Quantity]:
+    """Names and units of the across or through variables of a network's edges.
+
+    Args:
+        system: declares domains.
+        network: the scalar networks; None if there are none.
+        place: 0 for across, 1 for through variables.
+    """
     found = []
     for branch in network.branches if network is not None else ():
         if branch.port.spatial:
             continue
-        domain = model.domains.get(branch.port.domain) or DOMAINS[branch.port.domain]
+        domain = system.domains.get(branch.port.domain) or DOMAINS[branch.port.domain]
         variable = (domain.across, domain.through)[place]
         what = f"{variable.name} {('across', 'through')[place]} {branch.name}"
         found.append(Quantity(branch.name, variable.symbol, what))
@@ -101,22 +129,22 @@ def network_quantities(model: System, network: Network | None, place: int) -> li
 
 
 def across_groups(names: Sequence[str]) -> tuple[tuple[Quantity, int], ...]:
-    """The same, one for each edge, and how many they are: what the head of a file lists."""
+    """Across variables by edge with their number, as the head of an emitted file lists them."""
     return tuple((Quantity(name, "m/s, rad/s"), 6) for name in names)
 
 
 def reaction_groups(names: Sequence[str]) -> tuple[tuple[Quantity, int], ...]:
-    """The reactions, one for each joint, and how many they are."""
+    """Reactions by joint with their number, as the head of an emitted file lists them."""
     return tuple((Quantity(name, "N, N*m"), 6) for name in names)
 
 
-def reaction_axes(model: System) -> str:
-    """In whose axes reactions are resolved."""
-    return {HEAD: "the head's", GROUND_AXES: "ground"}.get(model.choices.reactions, "the tail's")
+def reaction_axes(system: System) -> str:
+    """The axes in which the user wants reactions resolved, in words."""
+    return {HEAD: "the head's", GROUND_AXES: "ground"}.get(system.choices.reactions, "the tail's")
 
 
 def across_quantities(names: Sequence[str]) -> tuple[Quantity, ...]:
-    """The names of all across variables: velocities and angular velocities in ground axes."""
+    """Names and units of across variables: linear, then angular velocity of each edge, in ground axes."""
     return tuple(
         Quantity(f"{name}_{letter}{c}", unit, f"{what} {c} across {name}, in ground axes")
         for name in names
@@ -125,9 +153,14 @@ def across_quantities(names: Sequence[str]) -> tuple[Quantity, ...]:
     )
 
 
-def reaction_quantities(model: System, names: Sequence[str]) -> tuple[Quantity, ...]:
-    """The names of all reactions."""
-    axes = reaction_axes(model)
+def reaction_quantities(system: System, names: Sequence[str]) -> tuple[Quantity, ...]:
+    """Names and units of reactions: force, then torque on each joint's head.
+
+    Args:
+        system: says in whose axes reactions are resolved.
+        names: the joints and constraints.
+    """
+    axes = reaction_axes(system)
     return tuple(
         Quantity(
             f"{name}_{letter}{c}",

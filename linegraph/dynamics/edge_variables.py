@@ -1,11 +1,12 @@
 """The inverse scheme: once v̇ and λ are known, every variable of every edge follows.
 
-Across variables follow from the circuit equations. Through variables follow from the cutset equations, body
-by body from the leaves to the root: the joint towards ground exerts what the body's motion asks for, less
-what all its other edges exert. Masses are the model's own, whatever the equations of motion regroup.
+Across variables follow from the circuit equations, through variables from the cutset equations, body by
+body from the leaves to the root: the joint towards ground transmits the force that the body's motion
+requires, less all forces of its other edges. Masses are those of the model, not the regrouped ones of
+the equations of motion.
 
-In each subspace through times across, summed over all edges, is zero. A force that acts beside a mass centre
-is a torque there: its arm has a *lever* edge in rotation, from ground to the mass centre.
+In each subspace, through times across summed over all edges is zero. A force beside a mass centre is a
+torque about it: its arm has a *lever* edge in rotation, from ground to the mass centre.
 """
 
 from __future__ import annotations
@@ -47,12 +48,12 @@ if TYPE_CHECKING:
 
 
 class InverseScheme:
-    """Every variable of a model at a state, over any algebra.
+    """Every variable of a model at a state, over any algebra; computed on demand.
 
     Args:
-        chords: the links, not regrouped, where they are, and their constraints there.
-        acceleration: v̇; None where only across variables are asked for.
-        multipliers: λ, one for each of `chords.equations`; none where only across variables are asked for.
+        chords: the tree at the state, not regrouped, with its constraints.
+        acceleration: v̇ (rad/s², m/s²); None if only across variables are needed.
+        multipliers: λ, one per entry of `chords.equations`; empty if only across variables are needed.
     """
 
     def __init__(
@@ -61,7 +62,7 @@ class InverseScheme:
         acceleration: Sequence[Scalar] | None = None,
         multipliers: Sequence[Scalar] = (),
     ) -> None:
-        """Nothing is calculated before it is asked for."""
+        """Compute the links' motion; forces and reactions follow when they are first needed."""
         self.chords = chords
         self._tree = tree = chords.state.tree
         self._model = tree.system
@@ -76,13 +77,13 @@ class InverseScheme:
     # -- where things are
 
     def terminal(self, name: str) -> GroundFrame:
-        """The motion of a terminal; of a mass centre too."""
+        """Motion of a terminal or a mass centre, in ground axes."""
         if name not in self._known:
             self._known[name] = self._found(name)
         return self._known[name]
 
     def center(self, body: str) -> GroundFrame:
-        """The motion of a body's mass centre, in the body's axes."""
+        """Motion of a body's mass centre; the frame has the body's axes."""
         return self.terminal(f"{body}.{MASS_CENTER}")
 
     def _found(self, name: str) -> GroundFrame:
@@ -105,9 +106,10 @@ class InverseScheme:
 
     @cached_property
     def joints(self) -> dict[str, Wrench]:
-        """What every joint and constraint exerts on its head, about the head's origin.
+        """The wrench of every joint and constraint on its head, about the head's origin, in ground axes.
 
-        Efforts and what drives it included, elements that sit in it not: these have edges of their own.
+        It includes efforts and driving forces, but not elements in the joint: these have edges of their
+        own.
         """
         found: dict[str, Wrench] = {}
         needed = {name: self._needed(name) for name in self._model.bodies}
@@ -137,12 +139,12 @@ class InverseScheme:
         } & joints
 
     def _needed(self, body: str) -> Wrench:
-        """What a body's motion asks for, less its weight, about its mass centre."""
+        """The force that a body's motion requires, less its weight, about its mass centre."""
         set_label(self._algebra, f"forces, body {body}")
         return self.inertia(body).through.turned()
 
     def _branch(self, needed: dict[str, Wrench], closure: Closure, forward: bool) -> Wrench:
-        """The cutset of a branch: what all beyond it still needs passes through it."""
+        """The cutset of a branch: it transmits all forces that the bodies beyond it still need."""
         joint: Any = closure.component
         set_label(self._algebra, f"reaction in {joint.name}")
         head = self.terminal(joint.between[1])
@@ -154,7 +156,7 @@ class InverseScheme:
         return rest if forward else rest.turned()
 
     def _chord(self, closure: Closure) -> Wrench:
-        """Multipliers times reaction directions, and efforts."""
+        """The wrench of a chord: multipliers times reaction directions, efforts, and elements in it."""
         total = NOTHING
         component = closure.component
         equations = self.chords.equations if self._multipliers else ()
@@ -173,7 +175,7 @@ class InverseScheme:
         return total
 
     def _exchange(self, needed: dict[str, Wrench], closure: Closure, wrench: Wrench) -> None:
-        """Let a chord act on the body at its head, and back on that at its tail."""
+        """Apply a chord's wrench to the body at its head, and the reaction to that at its tail."""
         component: Any = closure.component
         tail, head = component.between
         origin = self.terminal(head).origin
@@ -184,7 +186,7 @@ class InverseScheme:
                 needed[body] = needed[body] + given
 
     def _give(self, needed: dict[str, Wrench], terminal: str, wrench: Wrench) -> None:
-        """Take what acts at a terminal off what its body needs."""
+        """Subtract a force at a terminal from those that its body still needs."""
         body = self._terminals[terminal][0]
         if body in needed:
             origin = self.terminal(terminal).origin
@@ -192,7 +194,7 @@ class InverseScheme:
             needed[body] = needed[body] + given
 
     def _ends_of(self, element: Element | PointForce) -> list[tuple[str, Wrench]]:
-        """What an element between points, or a load, exerts on its terminals."""
+        """The wrenches of a load, or of an element between points, on its terminals."""
         if isinstance(element, PointForce):
             return [(element.at, self.elements[element.name].through)]
         if element.between is None:
@@ -203,7 +205,7 @@ class InverseScheme:
 
     @cached_property
     def elements(self) -> dict[str, EdgeVariables]:
-        """Every element and load as an edge."""
+        """Every force element and load as an edge."""
         return {element.name: self._element(element) for element in self._model.elements}
 
     def _element(self, element: Element | PointForce) -> EdgeVariables:
@@ -223,7 +225,7 @@ class InverseScheme:
         return self._edge(Wrench(pair.force, pair.torque), tail, head)
 
     def inertia(self, body: str) -> EdgeVariables:
-        """A body's inertia edge, from ground to its mass centre: d'Alembert's force and torque, weight."""
+        """A body's inertia edge, ground to mass centre: d'Alembert's force and torque, with weight."""
         own = self._model.bodies[body]
         frame = self.center(body)
         mass = self._resolve(own.mass)
@@ -236,7 +238,7 @@ class InverseScheme:
         return EdgeVariables(through, frame.linear, frame.angular)
 
     def _central(self, body: str, mass: Scalar) -> Any:
-        """A body's inertia about its mass centre, in its axes."""
+        """A body's inertia about its mass centre, in its axes: six entries (kg m²)."""
         own = self._model.bodies[body]
         xx, xy, xz, yy, yz, zz = (self._resolve(x) for x in own.inertia)
         if own.first is None:
@@ -266,7 +268,7 @@ class InverseScheme:
     # -- results
 
     def reaction(self, joint: str) -> Wrench:
-        """What a joint exerts on its head, about the head's origin, in the axes the user has chosen."""
+        """The wrench of a joint on its head, about the head's origin, in the axes of `choices.reactions`."""
         component: Any = self._tree.ends[joint].component
         tail, head = component.between
         axes = {HEAD: head, GROUND_AXES: GROUND}.get(self._model.choices.reactions, tail)
@@ -275,7 +277,7 @@ class InverseScheme:
         return Wrench(*(times(inward, part) for part in self.joints[joint]))
 
     def tension(self, element: Element) -> tuple[Scalar, Scalar]:
-        """A force element's across variable, its length or coordinate, and its through variable."""
+        """Across and through variable of a force element: its length or coordinate, and its tension."""
         if element.between is None:
             return self._laws.in_joint(element)
         x, pull = self._laws.between(element)
@@ -291,7 +293,7 @@ class InverseScheme:
         for name, (tail, head) in (*self._between.items(), *self._rigid.items()):
             first, second = self.terminal(tail), self.terminal(head)
             linear = subtract(second.linear, first.linear)
-            # the ends of a rigid arm turn alike
+            # both ends of a rigid arm have the same angular velocity: an exact zero, not a difference
             turned = ZERO if name in self._rigid else subtract(second.angular, first.angular)
             found[name] = (linear, turned)
         return found
@@ -317,7 +319,7 @@ class InverseScheme:
         return ends
 
     def drives(self) -> dict[str, Scalar]:
-        """What prescribed joints take to move: the effort along each of their coordinates."""
+        """Driving effort along each prescribed coordinate (N m or N), by name of its velocity."""
         found: dict[str, Scalar] = {}
         for name, closure in self._tree.ends.items():
             joint: Any = closure.component
@@ -335,7 +337,7 @@ class InverseScheme:
         return found
 
     def network(self) -> dict[str, tuple[Scalar, Scalar]]:
-        """Across and through variable of every edge in scalar subspaces."""
+        """Across and through variable of every edge of the scalar networks."""
         exchange = self._laws.exchange
         if exchange is None:
             return {}
@@ -344,17 +346,17 @@ class InverseScheme:
         return {name: (exchange.across(name), exchange.through(name)) for name in names}
 
     def gains(self) -> dict[str, Scalar]:
-        """The energy balance of each component of networks, which is zero."""
+        """The energy balance of each component of the networks (W): zero."""
         exchange = self._laws.exchange
         return {} if exchange is None else exchange.gains()
 
     def variables(self) -> Mapping[str, Scalar]:
-        """``across(R1)`` and ``through(R1)`` of networks, as outputs name them."""
+        """Variables ``across(R1)`` and ``through(R1)`` of networks, under the names that outputs use."""
         exchange = self._laws.exchange
         return {} if exchange is None else exchange.variables()
 
     def edges(self) -> dict[str, EdgeVariables]:
-        """All edges of the system graph, by name, in both mechanical subspaces at once."""
+        """All edges of the system graph, by name, in both mechanical subspaces."""
         found: dict[str, EdgeVariables] = {}
         for body in self._model.bodies:
             found[f"{body}/inertia"] = self.inertia(body)
@@ -366,7 +368,7 @@ class InverseScheme:
         return found | self._arms(found)
 
     def _arms(self, found: Mapping[str, EdgeVariables]) -> dict[str, EdgeVariables]:
-        """Rigid arms carry what their terminals' other edges exert: the vertex postulate."""
+        """Rigid arms transmit the sum of their terminals' other edges: the vertex postulate."""
         received: dict[str, Wrench] = {}
         for name, (tail, head) in self._between.items():
             edge = found[name]

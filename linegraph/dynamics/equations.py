@@ -1,11 +1,11 @@
-"""The equations of motion of a tree at a state, put together once for all algebras.
+"""The equations of motion of a tree at a state, composed once for all algebras.
 
-Emitted programs, closed forms and the float reference are thin over this: they choose the algebra and the
-state, and ask. Every quantity is derived when it is first asked for, and kept.
+Emitted programs, closed forms and the float reference only choose the algebra and the state. Every
+quantity is derived when it is first needed, and kept.
 
-    M(q) v̇ + h(q, v) = Q + J^T λ        J v̇ = γ        φ(q, t) = 0        J v = b
+    M(q) v̇ + h(q, v) = Q + Jᵀ λ        J v̇ = γ        φ(q, t) = 0        J v = b
 
-A new term of the equations is entered here, and in nothing else.
+This is the only place where a new term of the equations is entered.
 """
 
 from __future__ import annotations
@@ -45,11 +45,12 @@ class StateEquations:
 
     Args:
         tree: the links of the walk.
-        q: the coordinates.
-        v: the velocities.
-        shortest: the same links in working frames in which M and h take fewer operations; the walk's own
-            where None.
-        solution: gives v̇ and λ, which through variables of edges need; called when they are asked for.
+        q: the coordinates, one per `tree.positions`.
+        v: the velocities, one per `tree.velocities`.
+        shortest: the same links in working frames in which M and h take fewer operations; if None,
+            those of the walk are used.
+        solution: returns v̇ and λ, which through variables of edges need; called only if these are
+            requested.
     """
 
     def __init__(
@@ -60,7 +61,7 @@ class StateEquations:
         shortest: Shortened | None = None,
         solution: Callable[[], Solution] | None = None,
     ) -> None:
-        """Nothing is derived yet."""
+        """Keep the arguments; quantities are derived when they are first needed."""
         self.tree = tree
         self.q = q
         self.v = v
@@ -71,19 +72,19 @@ class StateEquations:
 
     @cached_property
     def state(self) -> TreeState:
-        """The links where they are, in the frames of the walk."""
+        """The tree at the state, in the working frames of the walk."""
         return TreeState(self.tree, self.q, self.v)
 
     @cached_property
     def working(self) -> TreeState:
-        """The state in the frames that M and h are derived in."""
+        """The tree at the state, in the working frames in which M and h are derived."""
         if self._shortest is None:
             return self.state
         return TreeState(self._shortest.tree, self.q, self.v)
 
     @cached_property
     def coordinate_rates(self) -> list[Scalar]:
-        """``q̇ = N(q) v``."""
+        """Rates of the coordinates, ``q̇ = N(q) v``."""
         return coordinate_rates(self.tree, self.q, self.v)
 
     # -- the tree
@@ -96,30 +97,35 @@ class StateEquations:
 
     @cached_property
     def stored(self) -> Entries:
-        """What the networks add to the mass matrix: row, column, entry."""
+        """Entries that the networks add to the mass matrix: row, column, value."""
         return network_entries(self.networks)
 
     @cached_property
     def mass_matrix(self) -> list[list[Scalar]]:
-        """M, symmetric without networks; in the units of v, forces over accelerations."""
+        """M, n x n, symmetric unless networks have controlled sources (kg m² or kg in mechanics)."""
         return united_mass_matrix(self.working, self.stored)
 
     @cached_property
     def bias(self) -> list[Scalar]:
-        """h, with all that acts and no input drives."""
+        """h: gravity, Coriolis and centrifugal forces, less all applied forces that no input drives."""
         return orthogonality.inverse_dynamics(self.working, None, self.rehoused(self.passive))
 
     def inverse_dynamics(self, a: Sequence[Scalar]) -> list[Scalar]:
-        """``M a + h`` without forming M."""
+        """Generalised forces ``M a + h`` for the accelerations a, without forming M."""
         return self.required_by(self.passive, a)
 
     def required_by(self, acting: Applied, a: Sequence[Scalar]) -> list[Scalar]:
-        """``M a + h`` where all that acts is `acting`."""
+        """Generalised forces ``M a + h`` with h for the given applied forces instead of the passive ones.
+
+        Args:
+            acting: applied forces, in the frames of the walk.
+            a: accelerations v̇ (rad/s², m/s²).
+        """
         return united_inverse_dynamics(self.working, self.stored, a, self.rehoused(acting))
 
     @cached_property
     def passive(self) -> Applied:
-        """Springs, dampers and loads that no input drives: part of the bias."""
+        """Springs, dampers and loads that no input drives: part of the bias h."""
         return self.applied(driven=False)
 
     @cached_property
@@ -128,15 +134,20 @@ class StateEquations:
         return self.applied(driven=True)
 
     def applied(self, *, driven: bool, network: str | None = None) -> Applied:
-        """What elements and loads do that inputs drive (`driven`), or those that none drives."""
+        """Forces of elements and loads that inputs drive, or of those that none drives.
+
+        Args:
+            driven: which of the two.
+            network: the part of the networks' forces to include; see `applied_forces.applied`.
+        """
         return applied(self.chords, driven=driven, network=network)
 
     def along(self, acting: Applied) -> list[Scalar]:
-        """What forces do along v."""
+        """Generalised forces of applied forces, one per velocity (N m or N)."""
         return orthogonality.generalised_forces(self.working, self.rehoused(acting))
 
     def rehoused(self, acting: Applied) -> Applied:
-        """Forces given in the frames of the walk, in the working ones."""
+        """Applied forces transformed from the frames of the walk to the working ones."""
         if self._shortest is None:
             return acting
         wrenches = self._shortest.rehoused(acting.wrenches, self.working.arms)
@@ -144,12 +155,12 @@ class StateEquations:
 
     @cached_property
     def forces(self) -> list[Scalar]:
-        """Q: the joints' efforts, and what inputs drive."""
+        """Q: the joints' efforts, and elements and loads that inputs drive."""
         return efforts(self.chords, self.along(self.active))
 
     @cached_property
     def energy(self) -> tuple[Scalar, ...]:
-        """Kinetic and potential energy (J), that of springs included; then what networks store, if any."""
+        """Kinetic and potential energy (J), springs included; then the networks' energy, if there are any."""
         kinetic, potential = orthogonality.energy(self.state)
         found = (kinetic, potential + self.passive.potential)
         return found if self.networks is None else (*found, self.networks.energy())
@@ -158,17 +169,17 @@ class StateEquations:
 
     @cached_property
     def chords(self) -> Chords:
-        """The constraints, and how the ends of every joint move."""
+        """The constraints, with the motion of both ends of every joint."""
         return Chords(self.state)
 
     @property
     def constraint_equations(self) -> list[ChordEquation]:
-        """What each constraint is of, in the order of J's rows."""
+        """The constraints in the order of J's rows."""
         return self.chords.equations
 
     @cached_property
     def constraints(self) -> list[Scalar]:
-        """φ(q, t), one for each constraint with an equation of position."""
+        """Residuals φ(q, t), one per holonomic constraint."""
         return self.chords.position()
 
     @cached_property
@@ -178,24 +189,24 @@ class StateEquations:
 
     @cached_property
     def constraint_rates(self) -> list[Scalar]:
-        """``J v - b``, which is 0 where v is allowed."""
+        """Residuals ``J v - b``: zero for admissible v."""
         return self.chords.rates()
 
     @cached_property
     def constraint_bias(self) -> list[Scalar]:
-        """γ of ``J v̇ = γ``."""
+        """Right-hand side γ of ``J v̇ = γ``."""
         return self.chords.bias()
 
     # -- the edges
 
     @cached_property
     def edges(self) -> InverseScheme:
-        """Across and through variables of every edge of the system graph; masses are the model's own."""
+        """Across and through variables of every edge of the system graph, with the model's own masses."""
         if self._solution is None:
             return InverseScheme(self.chords)
         return InverseScheme(self.chords, *self._solution())
 
     @cached_property
     def outputs(self) -> tuple[list[Scalar], bool]:
-        """The outputs that the model names, and whether one of them takes accelerations."""
+        """The model's outputs, and whether one of them depends on accelerations."""
         return observed(self.edges)

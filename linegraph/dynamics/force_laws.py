@@ -1,7 +1,8 @@
 """The laws of force elements, loads and network edges in mechanics, evaluated at a state.
 
-A law may name whatever the model knows there: parameters, inputs, the time, coordinates and their rates,
-and across and through variables of networks, which in turn may name the power a force element takes in.
+A law may name anything the model knows at the state: parameters, inputs, time, coordinates and their
+rates, and across and through variables of networks. Laws of networks may in turn name the power that a
+force element takes in.
 """
 
 from __future__ import annotations
@@ -31,12 +32,12 @@ if TYPE_CHECKING:
 
 
 class ForceLaws:
-    """What elements and loads exert at a state, one at a time.
+    """Evaluates the laws of elements and loads at a state, one at a time.
 
     Args:
-        chords: the links, where they are, and how chords move.
-        acceleration: v̇ where it is known; through variables of networks then follow from it.
-        part: which part of a network's forces is meant; see `network_state`.
+        chords: the tree at the state, with the motion of all joint ends.
+        acceleration: v̇ if it is known; through variables of networks then follow from it.
+        part: the part of a network's forces to evaluate; see `network_state`.
     """
 
     def __init__(
@@ -59,7 +60,15 @@ class ForceLaws:
             self._values = ChainMap(names, self.exchange.variables())
 
     def resolve(self, value: Any, /, **names: Scalar) -> Scalar:
-        """A value of the model at the state; `names` hide what is called alike."""
+        """The scalar of a model value at the state.
+
+        Args:
+            value: a number or an expression.
+            names: local names such as x and v, which hide others of the same name.
+
+        Raises:
+            ModelError: the expression names something unknown.
+        """
         values: Any = self._values
         values = ChainMap(names, values) if names else values
         return resolver(self._algebra, values)(value)
@@ -67,7 +76,7 @@ class ForceLaws:
     # -- where things are
 
     def terminal(self, terminal: str) -> tuple[int, GroundFrame]:
-        """A terminal's link, -1 for ground, and its motion."""
+        """A terminal's link, -1 for ground, and its motion in ground axes."""
         body, placement = self._terminals[terminal]
         link, pose = self._tree.bodies[body]
         constant = resolver(self._algebra, self._values)
@@ -77,11 +86,11 @@ class ForceLaws:
         return link, seated(self.chords.frames, Seat(link, at, axes))
 
     def closure(self, joint: str) -> Closure:
-        """A joint that is a chord."""
+        """The chord that a joint is."""
         return next(c for c in self._tree.closures if c.component.name == joint)
 
     def moved(self, joint: str) -> tuple[Scalar, Scalar]:
-        """The coordinate of a joint of one freedom and its velocity."""
+        """The coordinate and velocity of a joint of one freedom, branch or chord."""
         found = joint_state(self._state, joint)
         if found is None:
             found = self.chords.coordinates(self.closure(joint))
@@ -89,7 +98,7 @@ class ForceLaws:
         return x, v
 
     def _line(self, element: Element) -> tuple[Scalar, Vector, Scalar]:
-        """The distance of an element's ends, the direction from tail to head, the distance's rate."""
+        """Length of an element, unit vector from tail to head in ground axes, and rate of the length."""
         assert element.between is not None
         (_, a), (_, b) = (self.terminal(end) for end in element.between)
         line = subtract(b.origin, a.origin)
@@ -98,13 +107,13 @@ class ForceLaws:
         return x, direction, dot(direction, subtract(b.linear, a.linear))
 
     def measured(self, element: Element) -> Scalar:
-        """An element's coordinate or length."""
+        """An element's coordinate (rad or m) or length (m)."""
         return self._line(element)[0] if element.joint is None else self.moved(element.joint)[0]
 
     # -- what acts
 
     def _through(self, element: Element, x: Scalar, v: Scalar) -> Scalar:
-        """An element's through variable; of an edge of a network as the network says."""
+        """An element's through variable; for an edge of a network, the network's."""
         if not isinstance(element, NetworkForce) or self.exchange is None:
             return element.through(self._algebra, x, v, self.resolve)
         if self.exchange.acceleration is not None:
@@ -114,22 +123,22 @@ class ForceLaws:
         return -self.exchange.force(row, self.part)
 
     def in_joint(self, element: Element) -> tuple[Scalar, Scalar]:
-        """An element's coordinate, which is its joint's, and its through variable."""
+        """Coordinate and through variable of an element in a joint; a positive one opposes the coordinate."""
         x, v = self.moved(str(element.joint))
         return x, self._through(element, x, v)
 
     def between(self, element: Element) -> tuple[Scalar, Vector]:
-        """An element's length, and the pull on its tail in ground axes."""
+        """Length of an element between points (m), and the pull on its tail in ground axes (N)."""
         x, direction, v = self._line(element)
         return x, vector.scale(self._through(element, x, v), direction)
 
     def wrench(self, acting: PointForce) -> tuple[Vector, Vector]:
-        """A load's force and torque on its body, in ground axes, about its terminal's origin."""
+        """Force (N) of a load or drag on its body, and torque about its terminal (N m), in ground axes."""
         _, point = self.terminal(acting.at)
         return acting.wrench(self._algebra, point, self.resolve)
 
     def taken(self, name: str) -> Scalar:
-        """The power that a force element takes in."""
+        """The power that a force element takes in (W)."""
         element = self._elements[name]
         if element.joint is not None:
             x, v = self.moved(element.joint)
@@ -140,7 +149,7 @@ class ForceLaws:
     # -- how the edges of networks move
 
     def motion(self, port: str) -> EdgeMotion:
-        """How the edge of a network in mechanics moves."""
+        """Displacement, rate and acceleration of a network's edge in mechanics."""
         element = self._elements[port]
         if element.joint is None:
             return self._stretching(element)
@@ -155,7 +164,7 @@ class ForceLaws:
         return EdgeMotion(x, v, tuple((f.index, f.ratio) for f in freedoms), bias)
 
     def _stretching(self, element: Element) -> EdgeMotion:
-        """The same of an edge between two points: the distance, and its acceleration at v̇ = 0."""
+        """The motion of an edge between two points: its length, and the length's acceleration at v̇ = 0."""
         assert element.between is not None
         (near, a), (far, b) = (self.terminal(end) for end in element.between)
         x, direction, v = self._line(element)
@@ -167,7 +176,7 @@ class ForceLaws:
 
 
 class _Taken(dict[str, Any]):
-    """``taken(bearing)``: the power that a force element takes in, evaluated as it is looked up."""
+    """The names ``taken(bearing)``: power that a force element takes in, evaluated on look-up."""
 
     def __init__(self, laws: ForceLaws) -> None:
         super().__init__()

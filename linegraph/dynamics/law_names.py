@@ -1,4 +1,4 @@
-"""What a law may name: parameters, inputs, the time, coordinates and their rates as ``der(x)``."""
+"""Names that a law may use: parameters, inputs, time, coordinates and their rates as ``der(x)``."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 
 
 class Measures(Protocol):
-    """What tells the coordinates of joints that are chords."""
+    """Measures the coordinates of joints that are chords."""
 
     def named(self, closure: Closure) -> dict[str, Scalar]:
-        """Of a chord its coordinates x and their rates ``der(x)``, by name."""
+        """Coordinates x and rates ``der(x)`` of a chord, by name."""
 
 
 def scope(state: TreeState, chords: Measures | None = None) -> dict[str, Any]:
-    """Everything a law may name, with its scalar.
+    """Everything a law may name, with its scalar at a state.
 
     Args:
-        state: the links and where they are.
-        chords: where joints that are chords find their coordinates; None to leave these out.
+        state: the tree at (q, v).
+        chords: measures the coordinates of joints that are chords; None to leave these out.
     """
     tree, algebra = state.tree, state.algebra
     values: dict[str, Any] = {**tree.parameters, **tree.layout.named_inputs}
@@ -49,7 +49,7 @@ def scope(state: TreeState, chords: Measures | None = None) -> dict[str, Any]:
             if drive:
                 derivatives = rates
             if drive and isinstance(algebra, Jets):
-                # a prescribed motion goes on by itself, whatever the accelerations
+                # a prescribed motion has its own second derivative, whatever v̇ is
                 at, derivatives = drive, tuple(Jet(x.dx, x.ddx, 0) for x in drive)
         else:
             if chords is not None and joint.name in known:
@@ -62,16 +62,24 @@ def scope(state: TreeState, chords: Measures | None = None) -> dict[str, Any]:
 
 
 def joint_state(state: TreeState, joint: str) -> Any:
-    """The coordinates and velocities of a joint; None of one whose coordinates are none of the state."""
+    """The coordinates and velocities of a joint; None if its coordinates are not part of the state.
+
+    Args:
+        state: the tree at (q, v).
+        joint: name of the joint.
+    """
     place = state.tree.layout.own(joint)
     return None if place is None else coordinates(place, state.q, state.v)
 
 
 def relations(state: TreeState) -> list[tuple[list[Scalar], Scalar, Scalar]]:
-    """Of each relation ``a v = b`` the coefficients a, the right-hand side b and γ of ``a v̇ = γ``.
+    """For each relation ``a v = b`` the coefficients a, the right-hand side b and γ of ``a v̇ = γ``.
+
+    γ is minus the time derivative of the residual at v̇ = 0, found by evaluating the relation with
+    jets.
 
     Raises:
-        ModelError: a relation names an input or what has no value.
+        ModelError: a relation names an input, or something without a value.
     """
     tree, algebra = state.tree, state.algebra
     found = []
@@ -104,7 +112,13 @@ def relations(state: TreeState) -> list[tuple[list[Scalar], Scalar, Scalar]]:
 
 
 def require_linear(tree: KinematicTree, draw: random.Random) -> None:
-    """Refuse relations that are not linear in rates, or have none; judged at random states over floats.
+    """Refuse relations that contain no rates or are not linear in them, judged over floats.
+
+    A function r(v) is affine if r(a + b) + r(0) = r(a) + r(b); this is tested at random a and b.
+
+    Args:
+        tree: the links in numbers.
+        draw: source of the random states.
 
     Raises:
         ModelError: names the relation.
@@ -136,8 +150,8 @@ def require_linear(tree: KinematicTree, draw: random.Random) -> None:
             raise ModelError(who, problem)
 
 
-def _require_no_input(model: System, relation: Relation) -> None:
-    inputs = {declared.name for declared in model.inputs}
+def _require_no_input(system: System, relation: Relation) -> None:
+    inputs = {declared.name for declared in system.inputs}
     for name in sorted(names_in(relation.rate) & inputs):
         problem = (
             f"names the input {name}, whose derivative is not known; prescribe a joint's motion"

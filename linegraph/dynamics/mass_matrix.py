@@ -1,4 +1,8 @@
-"""The mass matrix: (13) and (15) of the paper with H applied, never multiplied out."""
+"""The mass matrix from composite bodies: (13) and (15) of the paper with H applied, not multiplied out.
+
+This is the composite-rigid-body algorithm [Featherstone 2008, p. 107] in the paper's terms [Boiadzhiev
+and Lilov 1993].
+"""
 
 from __future__ import annotations
 
@@ -22,15 +26,18 @@ if TYPE_CHECKING:
 
 Rows = list[list[Scalar]]
 Column = Iterator[tuple[Freedom, Scalar]]
-"""What a force on a link does along each freedom between the link and ground."""
+"""Generalised forces of a wrench on a link, along each freedom between the link and ground."""
 
 
 def mass_matrix(state: TreeState) -> Rows:
-    """M(q), n x n: (13) and (15) of the paper with H applied.
+    """M(q), n x n: (13) and (15) of the paper with H applied [Boiadzhiev and Lilov 1993].
 
-    The composite of a link is what H gathers: all mass carried by its joint. Its inertia force for a unit
-    acceleration of one coordinate, projected on every joint on the way to the root, is one column of M.
-    The force is carried from frame to frame, or in long chains to ground once and for all.
+    The composite of a link is all mass that its joint carries, gathered by H. Its inertia force for a
+    unit acceleration of one coordinate, projected on every joint on the way to the root, is one column
+    of M. The force is carried from frame to frame or, in long chains, once and for all to ground: from
+    there it is projected on every joint without being turned again.
+
+    Entries of a rotational velocity are in kg m², those of a translational one in kg.
     """
     tree, arms = state.tree, state.arms
     size = len(tree.velocities)
@@ -66,7 +73,7 @@ def _inward_by_frames(state: TreeState) -> Callable[[int, Vector, Vector], Colum
 
 
 def _inward_in_ground(state: TreeState) -> Callable[[int, Vector, Vector], Column]:
-    """Carry a link's force and torque to the origin of ground, where all joints' axes are known too."""
+    """Carry a link's force and torque to the origin of ground, where the axes of all joints are known too."""
     tree = state.tree
     rows: list[Matrix] = []
     places: list[Vector] = []
@@ -81,8 +88,8 @@ def _inward_in_ground(state: TreeState) -> Callable[[int, Vector, Vector], Colum
         places.append(at)
         turned = [vector.times(rows[-1], s) for s in arm.motion.angular]
         moved = [vector.times(rows[-1], u) for u in arm.motion.linear]
-        # a turn about an axis through `at` moves the body's point at the origin of ground; a prescribed
-        # joint has no freedom to project on
+        # the unit twist about the origin of ground: a turn about an axis through `at` moves that point too;
+        # a prescribed joint has no freedom to project on
         pairs = zip(turned, moved, strict=True) if link.velocities else ()
         axes.append([(s, add(u, cross(at, s))) for s, u in pairs])
 
@@ -97,10 +104,10 @@ def _inward_in_ground(state: TreeState) -> Callable[[int, Vector, Vector], Colum
 
 
 def ground_is_cheaper(state: TreeState) -> bool:
-    """Whether long chains make it worth carrying every column of M to ground.
+    """Whether the chains are long enough for carrying every column of M to ground to save operations.
 
-    Estimated in operations: from frame to frame the turning of two vectors and a lever, at every step;
-    in ground 11 at every step, and about 60 for each link and 40 for each column to get there.
+    Estimated operations: from frame to frame, turning two vectors and adding a lever at every step; in
+    ground 11 at every step, and to get there about 60 for each link and 40 for each column.
     """
     if state.tree.levelled:
         return False
@@ -110,7 +117,7 @@ def ground_is_cheaper(state: TreeState) -> bool:
     for link, arm in zip(state.tree.links, state.arms, strict=True):
         step = sum(TURNING[type(factor)] for factor in arm.rotation.factors)
         step += 4 * sum(1 for x in arm.at if x != 0)
-        # the root's own step is never crossed: its columns end at its joint
+        # the root's own arm is never crossed: columns end at its joint
         inward.append(step + inward[link.parent] if link.parent >= 0 else 0)
         depth.append(1 + depth[link.parent] if link.parent >= 0 else 0)
         by_frames += len(link.velocities) * inward[-1]
@@ -119,11 +126,11 @@ def ground_is_cheaper(state: TreeState) -> bool:
 
 
 TURNING: dict[type, int] = {Relabel: 0, Turn: 12, Full: 30}
-"""Operations to turn a force and a torque by a factor of a rotation."""
+"""Operations to turn a force and a torque by one factor of a rotation."""
 
 
 def composites(state: TreeState) -> list[Moments]:
-    """What each joint carries: moments gathered from the leaves to the root (H m H^T and its kin)."""
+    """The composite body that each joint carries: moments gathered from leaves to root (H m Hᵀ etc.)."""
     tree, arms = state.tree, state.arms
     moments = [arm.moments for arm in arms]
     for i in reversed(range(len(tree.links))):
@@ -132,12 +139,12 @@ def composites(state: TreeState) -> list[Moments]:
             set_label(state.algebra, f"carried by {link.caption}")
             carry = moments[i]
             if arms[i].level:
-                # what turns against ground moves with its parent like a point
+                # a link whose orientation is measured from ground moves with its parent like a point
                 carry = NO_MOMENTS._replace(mass=carry.mass)
             in_plane = link.in_plane and tree.links[link.parent].in_plane
             carry_over = carried_in_plane if in_plane else carried
             seen = carry_over(carry, arms[i].rotation, arms[i].at)
-            # what depends on q is known by its sums with fewer operations
+            # here moments depend on q: the diagonal of J from second moments is cheaper than kept separately
             both = joined(moments[link.parent], seen)
             in_plane = tree.links[link.parent].in_plane
             moments[link.parent] = both if in_plane else both._replace(about=(None, None, None))
@@ -145,7 +152,16 @@ def composites(state: TreeState) -> list[Moments]:
 
 
 def inertia_force(composite: Moments, angular: Vector, linear: Vector) -> tuple[Vector, Vector]:
-    """Force and torque about the origin for accelerations (angular, linear) of a composite at rest."""
+    """Inertia force of a composite body at rest that is accelerated.
+
+    Args:
+        composite: its moments about the origin.
+        angular: angular acceleration (rad/s²).
+        linear: acceleration of the origin (m/s²).
+
+    Returns:
+        Force (N) and torque about the origin (N m), in the same axes.
+    """
     mass, first, *_ = composite
     force = add(vector.scale(mass, linear), cross(angular, first))
     torque = add(applied_to(composite.inertia, angular), cross(first, linear))
@@ -153,7 +169,7 @@ def inertia_force(composite: Moments, angular: Vector, linear: Vector) -> tuple[
 
 
 def _contribute(rows: Rows, a: Freedom, b: Freedom, entry: Scalar, *, once: bool) -> None:
-    """Add one product of freedoms to M, on both sides of the diagonal; coupled ones may meet on it."""
+    """Add a product of two freedoms to M, on both sides of the diagonal; coupled ones may share an entry."""
     value = (a.ratio * b.ratio) * entry
     rows[a.index][b.index] = rows[a.index][b.index] + value
     if not once:

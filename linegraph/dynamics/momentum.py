@@ -1,12 +1,13 @@
-"""The system as a whole, seen from ground: centre of mass, momentum, and how both depend on v.
+"""The system as a whole relative to ground: centre of mass, momentum and their derivatives.
 
 With P the momentum and L the angular momentum about the centre of mass c, in ground axes,
 
     (P, L) = A(q) v        d/dt (P, L) = A v̇ + Ȧ v        P = m ċ
 
-A column of A is the momentum of what a joint carries when its velocity alone is 1. First moments and
-composites are gathered from the leaves to the root, as for the mass matrix. Of links whose moments are
-regrouped all sums are those of before, since what is handed on moves alike on both sides of the joint.
+A is the centroidal momentum matrix [Orin et al. 2013]. A column of it is the momentum of the composite
+body that a joint carries when only that joint's velocity is 1. First moments and composites are
+gathered from the leaves to the root, as for the mass matrix. For links with regrouped moments all sums
+are the original ones, since moments that are passed on move alike on both sides of the joint.
 """
 
 from __future__ import annotations
@@ -29,11 +30,18 @@ if TYPE_CHECKING:
     from linegraph.kinematics.links import KinematicTree
 
 Moment = tuple["Scalar", Vector]
-"""Mass and first moment of mass."""
+"""Mass (kg) and first moment of mass (kg m)."""
 
 
 def shared(tree: KinematicTree, mass: Scalar) -> KinematicTree:
-    """The tree with moments as shares of the whole mass: its first moment is the centre of mass."""
+    """The tree with masses and first moments divided by the total mass.
+
+    Its first moment is then the centre of mass itself, with no division at the end.
+
+    Args:
+        tree: the links.
+        mass: the total mass (kg).
+    """
     links = []
     for link in tree.links:
         m, first, *_ = link.moments
@@ -43,18 +51,21 @@ def shared(tree: KinematicTree, mass: Scalar) -> KinematicTree:
 
 
 def center(view: Outlook, at_rest: Vector) -> Vector:
-    """The first moment of all, ``sum of m r``, gathered from the leaves to the root.
+    """First moment of the whole system, ``Σ m r``, gathered from the leaves to the root.
 
     Args:
-        view: the links at a state.
-        at_rest: what their moments lack of it.
+        view: the links relative to ground.
+        at_rest: first moment that links on ground passed on and that the links lack (kg m).
+
+    Returns:
+        A vector in ground axes (kg m); the centre of mass (m) if the tree has `shared` masses.
     """
     _, total_first = _firsts(view, level=False)
     return add(at_rest, total_first)
 
 
 def center_columns(view: Outlook) -> list[Column]:
-    """What a unit of each velocity makes of the first moment of all: its second vector is zero."""
+    """The change of the first moment for a unit of each velocity; the second vectors are zero."""
     carried, _ = _firsts(view, level=True)
     found = []
     for i, (mass, first) in enumerate(carried):
@@ -68,16 +79,16 @@ def center_columns(view: Outlook) -> list[Column]:
 
 
 def center_velocity(shares: Outlook) -> Vector:
-    """The velocity of the centre of mass, gathered from the leaves to the root."""
+    """Velocity of the centre of mass in ground axes (m/s), for a tree with `shared` masses."""
     return _gathered(shares, [(push, ZERO) for push, _ in _own_momenta(shares)])[0]
 
 
 def momentum_columns(view: Outlook, c: Vector) -> list[Column]:
-    """The columns of A, those of prescribed velocities too.
+    """The columns of A, those of prescribed velocities included.
 
     Args:
-        view: the links at a state.
-        c: the centre of mass.
+        view: the links relative to ground.
+        c: the centre of mass, in ground axes (m).
     """
     found = []
     carried = composites(view.state)
@@ -98,10 +109,10 @@ def momentum_columns(view: Outlook, c: Vector) -> list[Column]:
 
 
 def _apart(view: Outlook) -> list[list[tuple[Vector, Vector]]]:
-    """Of each link those that it carries but does not turn: origin, and first moment of all they carry.
+    """For each link, those that it carries but does not turn: origin, and first moment carried there.
 
-    A composite has them as points at their origins, which is enough for forces along joints; their mass
-    centres lie elsewhere, which momentum about another point feels.
+    A composite contains them as points at their origins, which is enough for forces along joints. Their
+    mass centres are elsewhere, which matters for momentum about another point.
     """
     found: list[list[tuple[Vector, Vector]]] = [[] for _ in view.arms]
     if not view.tree.levelled:
@@ -117,7 +128,15 @@ def _apart(view: Outlook) -> list[list[tuple[Vector, Vector]]]:
 
 
 def momenta(view: Outlook, c: Vector) -> list[Twist]:
-    """Ways to (P, L): by the columns of A, or every link's own, gathered from the leaves to the root."""
+    """Alternative formulas for (P, L), all equal: by the columns of A, or summed over links inward.
+
+    Args:
+        view: the links relative to ground.
+        c: the centre of mass, in ground axes (m).
+
+    Returns:
+        Momentum (N s) and angular momentum about c (N m s), in ground axes.
+    """
     return [total(momentum_columns(view, c)), _about(c, _gathered(view, _own_momenta(view)))]
 
 
@@ -134,7 +153,15 @@ def _own_momenta(view: Outlook) -> list[Twist]:
 
 
 def momentum_rate(view: Outlook, c: Vector) -> Twist:
-    """``d/dt (P, L)`` at v̇ = 0: d'Alembert's forces and torques of all links without gravity."""
+    """Rate ``d/dt (P, L)`` at v̇ = 0: d'Alembert's forces of all links, without gravity.
+
+    Args:
+        view: the links relative to ground.
+        c: the centre of mass, in ground axes (m).
+
+    Returns:
+        Force (N) and torque about c (N m), in ground axes.
+    """
     forces = inertia_forces(view.state, gravity=ZERO)
     return _about(c, _gathered(view, forces))
 
@@ -143,9 +170,9 @@ def _firsts(view: Outlook, *, level: bool) -> tuple[list[Moment], Vector]:
     """Mass and first moment that each joint carries, and the first moment of all about ground's origin.
 
     Args:
-        view: the links at a state.
-        level: whether a link that turns against ground counts as a point for the joints before it, which
-            do not turn it.
+        view: the links relative to ground.
+        level: whether a link whose orientation is measured from ground counts as a point for the joints
+            before it, which do not turn it.
     """
     found: list[Moment] = [(arm.moments.mass, arm.moments.first) for arm in view.arms]
     whole: Vector = ZERO
@@ -164,7 +191,7 @@ def _firsts(view: Outlook, *, level: bool) -> tuple[list[Moment], Vector]:
 
 
 def _gathered(view: Outlook, wrenches: Iterable[Twist]) -> Twist:
-    """The sum of forces and torques of all links, about the origin of ground and in its axes."""
+    """The sum of the wrenches of all links, about the origin of ground and in its axes."""
     found = list(wrenches)
     whole: Twist = (ZERO, ZERO)
     for i in reversed(range(len(found))):
@@ -182,7 +209,7 @@ def _gathered(view: Outlook, wrenches: Iterable[Twist]) -> Twist:
 
 
 def _about(c: Vector, whole: Twist) -> Twist:
-    """A force and a torque about the origin of ground, about another point."""
+    """A wrench about the origin of ground, moved to another point."""
     force, torque = whole
     return force, subtract(torque, cross(c, force))
 
@@ -192,5 +219,10 @@ def _divided(a: Vector, by: Scalar) -> Vector:
 
 
 def scaled(found: Sequence[Column], by: Scalar) -> list[Column]:
-    """Columns whose first vector is divided by a scalar."""
+    """Columns with their first vectors divided by a scalar.
+
+    Args:
+        found: the columns.
+        by: the divisor, e.g. the total mass (kg).
+    """
     return [column._replace(first=_divided(column.first, by)) for column in found]

@@ -1,7 +1,7 @@
-"""A network at a state: its equations over any algebra, with what mechanics tells it and takes from it.
+"""A scalar network at a state: its equations over any algebra, coupled to mechanics.
 
-The network is derived once, over symbols of its own; here these get their values: its states from v, the
-rates and displacements of its edges in mechanics from the tree, parameters, inputs and the time from the
+A network is derived once, over symbols of its own. Here the symbols get values: its states from v,
+displacements and rates of its edges in mechanics from the tree, parameters, inputs and time from the
 model.
 """
 
@@ -31,17 +31,17 @@ if TYPE_CHECKING:
     from linegraph.networks import Network
 
 RESTING, DRIVEN, ALL, NONE = "resting", "driven", "all", "none"
-"""What of the forces is meant: with all inputs zero, what inputs add to that, both, or nothing."""
+"""Parts of a network's forces: with all inputs zero, the addition by inputs, both, or nothing."""
 
 
 @dataclass(frozen=True)
 class EdgeMotion:
-    """How an edge in 3-D mechanics moves.
+    """Motion of an edge of a network in 3-D mechanics.
 
     Attributes:
-        x, w: displacement and rate.
-        row: its rate by velocity: ``w = Σ row v`` and what is prescribed.
-        bias: its acceleration at v̇ = 0; None where no formula gives it.
+        x, w: displacement (rad or m) and rate (rad/s or m/s).
+        row: coefficients of the rate by velocity: ``w = Σ row v``, plus prescribed motion.
+        bias: acceleration at v̇ = 0; None if there is no formula for it.
     """
 
     x: Scalar
@@ -52,14 +52,14 @@ class EdgeMotion:
 
 @dataclass
 class Exchange:
-    """A network at a state.
+    """A network at a state, with what it exchanges with mechanics.
 
     Attributes:
-        network: what was derived.
-        state: the links and where they are; the network's states are among v.
-        names: what else of the model laws may name.
-        motion: of an edge in mechanics, by its name.
-        acceleration: v̇, where it is known.
+        network: the derived network.
+        state: the tree at (q, v); the network's states are among v.
+        names: other names that laws may use, with their scalars.
+        motion: returns the motion of an edge in mechanics, by its name.
+        acceleration: v̇, if it is known.
     """
 
     network: Network
@@ -71,11 +71,11 @@ class Exchange:
 
     @property
     def first(self) -> int:
-        """Where the network's states begin in v."""
+        """Index of the network's first state in v."""
         return self.state.tree.layout.mechanical
 
     def motion_of(self, port: str) -> EdgeMotion:
-        """How an edge in mechanics moves, found once."""
+        """The motion of an edge in mechanics, computed once."""
         if port not in self._motions:
             self._motions[port] = self.motion(port)
         return self._motions[port]
@@ -83,7 +83,15 @@ class Exchange:
     # -- the equations of motion
 
     def force(self, row: int, what: str) -> Scalar:
-        """F of a row: a state's, or what an edge in mechanics drives with, at v̇ = 0."""
+        """Right-hand side F of one row of the network at v̇ = 0.
+
+        Args:
+            row: a state of the network, or after these an edge in mechanics, whose driving force F is.
+            what: `RESTING`, `DRIVEN`, `ALL` or `NONE`.
+
+        Raises:
+            ModelError: an edge in mechanics has no formula for its acceleration.
+        """
         if what == NONE:
             return 0
         found = self.still(self.network.parts[what][row])
@@ -95,7 +103,7 @@ class Exchange:
         return found
 
     def _bias(self, port: str) -> Scalar:
-        """What an edge in mechanics accelerates with at v̇ = 0."""
+        """Acceleration of an edge in mechanics at v̇ = 0."""
         bias = self.motion_of(port).bias
         if bias is None:
             problem = (
@@ -107,7 +115,7 @@ class Exchange:
         return bias
 
     def inertia(self) -> Iterator[tuple[int, int, Scalar]]:
-        """What the network adds to the mass matrix: row, column, entry; rows and columns may repeat."""
+        """Entries that the network adds to the mass matrix: row, column, value; places may repeat."""
         for (i, j), entry in self.network.mass.items():
             value = self.still(entry)
             for row, left in self.projected(i):
@@ -115,40 +123,45 @@ class Exchange:
                     yield row, column, left * right * value
 
     def projected(self, place: int) -> tuple[tuple[int, Scalar], ...]:
-        """Where a row or column of the network stands in the whole."""
+        """The velocities, with factors, that a row or column of the network belongs to."""
         count = len(self.network.states)
         if place < count:
             return ((self.first + place, 1),)
         return self.motion_of(self.network.ports[place - count].name).row
 
     def coordinate_of(self, port: int) -> tuple[tuple[int, Scalar], ...]:
-        """The same of an edge in mechanics."""
+        """The velocities, with factors, that an edge in mechanics belongs to."""
         return self.projected(len(self.network.states) + port)
 
     # -- every variable
 
     def across(self, edge: str) -> Scalar:
-        """X of an edge."""
+        """Across variable X of an edge."""
         return self._moving(self.network.variables[edge][0])
 
     def through(self, edge: str) -> Scalar:
-        """Y of an edge."""
+        """Through variable Y of an edge."""
         return self._moving(self.network.variables[edge][1])
 
     def size(self, edge: str, place: int) -> Scalar:
-        """How large the terms are that X (0) or Y (1) of an edge is the sum of."""
+        """Size of the terms whose sum is a variable of an edge: the scale of its rounding.
+
+        Args:
+            edge: name of the edge.
+            place: 0 for the across, 1 for the through variable.
+        """
         return self._moving(self.network.variable_sizes[edge][place])
 
     def heat(self, component: str) -> Scalar:
-        """The power that a component turns into heat."""
+        """The power that a component turns into heat (W)."""
         return self._moving(self.network.heat[component])
 
     def gains(self) -> dict[str, Scalar]:
-        """Of each component what it stores and turns into heat, less what it takes in: zero."""
+        """The energy balance of each component, stored plus heat less taken in (W): zero."""
         return {name: self._moving(x) for name, x in self.network.gains.items()}
 
     def energy(self) -> Scalar:
-        """What the network's stores hold."""
+        """The energy in the network's stores (J)."""
         total: Scalar = 0
         for name, stored in self.network.energy.items():
             if name not in self.network.powerful:
@@ -163,19 +176,19 @@ class Exchange:
         return total
 
     def variables(self) -> dict[str, Scalar]:
-        """``across(R1)`` and ``through(R1)`` of every edge, evaluated as they are looked up."""
+        """Variables ``across(R1)`` and ``through(R1)`` of every edge, evaluated on look-up."""
         return _Variables(self)
 
     # -- symbols
 
     @cached_property
     def still(self) -> Replay:
-        """Scalars at v̇ = 0."""
+        """Replay of the network's scalars at v̇ = 0."""
         return Replay(self.state.algebra, lambda symbol: self._value(symbol, None))
 
     @cached_property
     def _moving(self) -> Replay:
-        """Scalars with the rates they have, if these are known."""
+        """Replay of the network's scalars with their rates, if these are known."""
         return Replay(self.state.algebra, lambda symbol: self._value(symbol, self.acceleration))
 
     def _value(self, symbol: Symbol, acceleration: Sequence[Scalar] | None) -> Scalar:
@@ -221,17 +234,17 @@ class Exchange:
         return self.state.algebra.symbol("loop", place)
 
     def algebraic_loop(self) -> list[Scalar]:
-        """What is zero in the algebraic loop."""
+        """Residuals of the algebraic loop: zero at its solution."""
         return [self.still(residue) for residue in self.network.loop]
 
     @cached_property
     def solved(self) -> list[float]:
-        """The unknowns of the algebraic loop, in floats."""
+        """The unknowns of the algebraic loop, solved in floats."""
         return solved(self.network, lambda symbol: float(self._value(symbol, None)))
 
 
 class _Variables(dict[str, Any]):
-    """Looks edges up when they are named."""
+    """Variables of edges, evaluated on look-up."""
 
     def __init__(self, exchange: Exchange) -> None:
         super().__init__()

@@ -1,18 +1,20 @@
-"""Stage 4: the equations of motion of a tree, from the principle of orthogonality.
+"""The equations of motion of a tree, from the principle of orthogonality.
 
 Summed over all edges of all subspaces, through times across is zero, and stays so when the across
 variables are varied. With the cutset equations the sum becomes d'Alembert's principle; with the circuit
-and connecting equations all variations become those of the joint coordinates, and their coefficients are
+and connecting equations all variations become those of the joint coordinates, and their coefficients
+are
 
     M(q) v̇ + h(q, v) = Q
 
-In the paper's matrices (Boiadzhiev & Lilov 1993, (12)-(15)), with H = P^-1 and Λ = S x (H C) + K,
+In the paper's matrices [Boiadzhiev and Lilov 1993, (12)-(15)], with H = P^-1 and Λ = S x (H C) + K,
 
-    M = (S H) I (S H)^T + Λ (H m H^T) Λ^T
+    M = (S H) I (S H)ᵀ + Λ (H m Hᵀ) Λᵀ
 
-Here H is applied, never multiplied out: H^T sums from the root to the leaves (circuit equations: motion),
-H from the leaves to the root (cutset equations: forces). Each link's vectors are resolved in its own
-working frame, its mass distribution taken about its joint.
+Here H is applied, never multiplied out, since as a matrix it costs n² blocks instead of n steps: Hᵀ
+sums from the root to the leaves (circuit equations: motion), H from the leaves to the root (cutset
+equations: forces). Each link's vectors are resolved in its own working frame, its mass distribution is
+taken about its joint.
 """
 
 from __future__ import annotations
@@ -40,10 +42,19 @@ def inverse_dynamics(
     acceleration: Iterable[Scalar] | None = None,
     applied: Applied | None = None,
 ) -> list[Scalar]:
-    """``M v̇ + h`` for given v̇, without M; with no v̇ the bias h itself: (14) of the paper.
+    """Generalised forces ``M v̇ + h`` for given v̇, without M: (14) of the paper, with H applied.
 
-    Motion runs from the root to the leaves (H^T), d'Alembert's forces and torques, less those `applied`,
-    back (H).
+    Motion is computed from the root to the leaves (Hᵀ), d'Alembert's forces less applied ones are
+    gathered back (H): the recursive Newton-Euler algorithm [Featherstone 2008, sec. 5.3].
+
+    Args:
+        state: the tree at (q, v).
+        acceleration: v̇ (rad/s², m/s²); if None, the result is the bias h.
+        applied: wrenches about the links' origins in their working axes, and generalised forces, both
+            subtracted.
+
+    Returns:
+        One generalised force per velocity (N m or N).
     """
     forces = inertia_forces(state, acceleration)
     total: list[Scalar] = [0] * len(state.tree.velocities)
@@ -57,14 +68,22 @@ def inverse_dynamics(
 
 
 def generalised_forces(state: TreeState, applied: Applied) -> list[Scalar]:
-    """What applied forces do along v: H, and the projection on every joint."""
+    """Generalised forces of applied forces: H, and the projection on every joint.
+
+    Args:
+        state: the tree at (q, v).
+        applied: wrenches about the links' origins in their working axes, and generalised forces.
+
+    Returns:
+        One generalised force per velocity (N m or N).
+    """
     return _inward(state, list(applied.wrenches), list(applied.efforts))
 
 
 def _inward(
     state: TreeState, forces: list[tuple[Vector, Vector]], total: list[Scalar]
 ) -> list[Scalar]:
-    """Cutset equations: forces from the leaves to the root, projected on every freedom they pass."""
+    """Cutset equations: forces from the leaves to the root, projected on every freedom that they pass."""
     tree, arms = state.tree, state.arms
     for i in reversed(range(len(tree.links))):
         link = tree.links[i]
@@ -81,7 +100,7 @@ def _inward(
 
 
 def energy(state: TreeState) -> tuple[Scalar, Scalar]:
-    """Kinetic and potential energy (J); the latter is zero with all mass at the origin of ground."""
+    """Kinetic and potential energy (J); weight has zero potential with all mass at the origin of ground."""
     kinetic: Scalar = 0
     velocities: list[tuple[Vector, Vector]] = []
     for link, arm in zip(state.tree.links, state.arms, strict=True):
@@ -100,7 +119,7 @@ def energy(state: TreeState) -> tuple[Scalar, Scalar]:
 
 
 def _potential(state: TreeState) -> Scalar:
-    """``-g . (sum of m r)``: first moments gathered from the leaves to the root."""
+    """Potential energy of weight, ``-g·Σ m r``: first moments gathered from the leaves to the root."""
     tree, arms = state.tree, state.arms
     gathered = [(arm.moments.mass, arm.moments.first) for arm in arms]
     total: Vector = ZERO
@@ -118,9 +137,18 @@ def _potential(state: TreeState) -> Scalar:
 
 
 def gathered(arm: Arm, force: Vector, torque: Vector) -> tuple[Vector, Vector]:
-    """Cutset equation with its connecting term: carry a force and a torque across an arm inward.
+    """Cutset equation with its connecting term: carry a wrench across an arm inward.
 
-    The torque on a link that turns against ground ends there, in its inertia edge.
+    The torque on a link whose orientation is measured from ground ends in its inertia edge and is not
+    carried on.
+
+    Args:
+        arm: the joint at the state.
+        force: on the link, in its working axes (N).
+        torque: about the link's origin, in its working axes (N m).
+
+    Returns:
+        The force and the torque about the parent's origin, in the parent's working axes.
     """
     force = arm.rotation.out(force)
     if arm.level:
@@ -129,12 +157,24 @@ def gathered(arm: Arm, force: Vector, torque: Vector) -> tuple[Vector, Vector]:
 
 
 def projection(motion: Motion, a: int, force: Vector, torque: Vector) -> Scalar:
-    """Through variables projected on one freedom of a joint: s . n + κ . f."""
+    """Generalised force of a wrench along one freedom of a joint: s·n + κ·f.
+
+    Args:
+        motion: the joint's motion, with unit twists (s, κ).
+        a: which freedom.
+        force: f, in the same axes (N).
+        torque: n, about the far link's origin (N m).
+    """
     return dot(motion.angular[a], torque) + dot(motion.linear[a], force)
 
 
 def applied_to(j: Inertia, a: Vector) -> Vector:
-    """A symmetric tensor times a vector."""
+    """A symmetric tensor times a vector.
+
+    Args:
+        j: its entries xx, xy, xz, yy, yz, zz; off-diagonal ones have the sign of the matrix entries.
+        a: the vector, in the same axes.
+    """
     xx, xy, xz, yy, yz, zz = j
     return (
         xx * a[0] + xy * a[1] + xz * a[2],

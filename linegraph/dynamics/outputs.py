@@ -34,15 +34,15 @@ DYNAMIC = ("acceleration", "angular_acceleration", "force", "torque")
 
 
 def observed(scheme: InverseScheme) -> tuple[list[Scalar], bool]:
-    """The outputs' scalars, and whether one of them takes accelerations.
+    """The scalars of all outputs, and whether one of them depends on accelerations.
 
     Raises:
-        ModelError: an output names what does not exist.
+        ModelError: an output names something that does not exist.
     """
     state = scheme.chords.state
     model, algebra = state.tree.system, state.algebra
     values = scope(state, scheme.chords)
-    # an effort has the name of a coordinate or a velocity, which here means that and nothing else
+    # efforts share their names with velocities: in outputs such a name means the coordinate or velocity
     own = {x.name for j in model.joints for x in (*j.positions(), *j.velocities())}
     prescribing = {q.name: k for k, q in enumerate(state.tree.inputs) if q.name not in own}
     dynamic = False
@@ -63,11 +63,11 @@ def observed(scheme: InverseScheme) -> tuple[list[Scalar], bool]:
 
 
 def _edge_variable(
-    model: System, scheme: InverseScheme, kind: str, thing: str, part: str
+    system: System, scheme: InverseScheme, kind: str, thing: str, part: str
 ) -> Scalar:
     """One variable of an edge or a point."""
     if kind in OF_POINTS:
-        known = [*terminals_of(model), *(f"{body}.mass_center" for body in model.bodies)]
+        known = [*terminals_of(system), *(f"{body}.mass_center" for body in system.bodies)]
         if thing not in known:
             raise ModelError(
                 "", f"{kind}({thing}): there is no such terminal; {nearest(thing, known)}"
@@ -76,7 +76,7 @@ def _edge_variable(
     if f"{kind}({thing})" in scheme.variables():
         return scheme.variables()[f"{kind}({thing})"]
     if kind in ("across", "through"):
-        elements = {e.name: e for e in model.elements if isinstance(e, Element)}
+        elements = {e.name: e for e in system.elements if isinstance(e, Element)}
         known_edges = [*elements, *scheme.network()]
         if thing not in elements:
             raise ModelError(

@@ -1,9 +1,9 @@
-"""The potential energy of force elements: which part of a law has one, and what it is.
+"""The potential energy of force elements: which part of a law has one, and its formula.
 
-The tension at rest, with inputs at zero, is what may have a potential: ``f(x, 0)``. What vanishes with the
-rates and the inputs takes or gives power and stores none. Where f(x, 0) depends on x and parameters alone,
-its antiderivative is the energy. Where no rule gives one, or other coordinates are in it, the energy is not
-known, unless the user gives it: then its derivative with respect to x is compared with f(x, 0).
+Only the tension at rest with inputs at zero, ``f(x, 0)``, can have a potential; parts that vanish with
+rates and inputs take or give power and store none. If f(x, 0) depends on x and parameters alone, its
+antiderivative is the energy. If no rule of integration applies, or other coordinates occur, the energy
+is unknown unless the user gives it; then its derivative with respect to x is compared with f(x, 0).
 """
 
 from __future__ import annotations
@@ -34,19 +34,19 @@ CLOSE = 1e-9
 
 
 class _Unknown(Exception):
-    """The energy is not known; says why."""
+    """The energy is unknown; the message gives the reason."""
 
 
 def stored(
-    model: System, element: Element, algebra: Algebra, x: Scalar, resolve: Resolve
+    system: System, element: Element, algebra: Algebra, x: Scalar, resolve: Resolve
 ) -> Scalar:
-    """The potential energy of an element at x (J); 0 where it is not known.
+    """The potential energy of an element at x (J); 0 if it is unknown.
 
     Args:
-        model: says which names are inputs and which are coordinates.
+        system: declares inputs and coordinates.
         element: a force element.
         algebra: where to calculate.
-        x: its distance or coordinate (m or rad).
+        x: its length or coordinate (m or rad).
         resolve: from model values to scalars.
     """
     given = element.energy if isinstance(element, (Law, Spring)) else None
@@ -54,7 +54,7 @@ def stored(
     if given is not None:
         return resolve(given, x=stretch)
     try:
-        found = _potential(model, element)
+        found = _potential(system, element)
     except _Unknown:
         return 0
     if found is None:
@@ -66,43 +66,48 @@ def stored(
     return Replay(algebra, symbol)(found)
 
 
-def holds(model: System, element: Element | PointForce) -> bool:
-    """Whether an element that inputs drive has a potential energy: a law with a part that they do not."""
+def holds(system: System, element: Element | PointForce) -> bool:
+    """Whether an element driven by inputs has a potential energy: part of its law is independent of them.
+
+    Args:
+        system: declares inputs and coordinates.
+        element: a force element or load.
+    """
     if not isinstance(element, (Law, Spring)):
         return False
     if element.energy is not None:
         return True
     try:
-        return _potential(model, element) not in (None, 0)
+        return _potential(system, element) not in (None, 0)
     except _Unknown:
         return False
 
 
-def unknown(model: System) -> dict[str, str]:
-    """The force elements whose potential energy is not known, and why."""
+def unknown(system: System) -> dict[str, str]:
+    """The force elements whose potential energy is unknown, each with the reason."""
     found = {}
-    for element in model.force_elements:
+    for element in system.force_elements:
         if getattr(element, "energy", None) is not None:
             continue
         try:
-            _potential(model, element)
+            _potential(system, element)
         except _Unknown as reason:
             found[f"{element.kind} {element.name}"] = str(reason)
     return found
 
 
-def require_energies(model: System) -> None:
+def require_energies(system: System) -> None:
     """Refuse an `energy` whose derivative with respect to x is not the force at rest.
 
     Raises:
         ModelError: names the element.
     """
-    for element in model.force_elements:
+    for element in system.force_elements:
         given = element.energy if isinstance(element, (Law, Spring)) else None
         if given is None:
             continue
         who = f'{element.kind} "{element.name}"'
-        trace = _Trace(model)
+        trace = _Trace(system)
         try:
             energy = trace.value(given)
             force = trace.value(_law(element))
@@ -113,7 +118,7 @@ def require_energies(model: System) -> None:
             raise ModelError(who, f"energy: {error}") from None
         except ModelError as error:
             raise ModelError(who, f"energy: {error.problem}") from None
-        inputs = sorted(names_in(given) & {q.name for q in model.inputs})
+        inputs = sorted(names_in(given) & {q.name for q in system.inputs})
         if inputs or any(s[0] == RATE for s in trace.calculus.support(energy)):
             what = inputs[0] if inputs else "v"
             raise ModelError(
@@ -128,28 +133,28 @@ def require_energies(model: System) -> None:
 
 
 def _law(element: Element | PointForce) -> Any:
-    """The expression of an element's tension; of a linear spring its stiffness."""
+    """The expression of an element's tension; for a linear spring its stiffness."""
     force = getattr(element, "force", None)
     return element.stiffness if force is None and isinstance(element, Spring) else force
 
 
-def _potential(model: System, element: Element | PointForce) -> Scalar | None:
-    """The energy over the DAG of a trace; None of an element that knows its own.
+def _potential(system: System, element: Element | PointForce) -> Scalar | None:
+    """The energy over the DAG of a trace; None if the element's class has its own formula.
 
     Raises:
-        _Unknown: it is not known; says why.
+        _Unknown: gives the reason.
     """
     if isinstance(element, Spring):
-        _require_own(model, element.length, "length")
+        _require_own(system, element.length, "length")
         if element.force is None:
-            _require_own(model, element.stiffness, "stiffness")
+            _require_own(system, element.stiffness, "stiffness")
             return None
     elif not isinstance(element, Law):
         for value in element.values():
             if element.kind == "stop":
-                _require_own(model, value, "a value")
+                _require_own(system, value, "a value")
         return None
-    trace = _Trace(model)
+    trace = _Trace(system)
     try:
         force = trace.at_rest(trace.value(_law(element)))
     except ModelError as error:
@@ -163,36 +168,36 @@ def _potential(model: System, element: Element | PointForce) -> Scalar | None:
     return found
 
 
-def _require_own(model: System, value: Any, what: str) -> None:
-    """Refuse a spring whose values others change: no energy of x belongs to it."""
-    trace = _Trace(model)
+def _require_own(system: System, value: Any, what: str) -> None:
+    """Refuse a spring whose values depend on other quantities: it has no energy as a function of x."""
+    trace = _Trace(system)
     for name in sorted(names_in(value)):
         if name in trace.inputs or name in trace.positions or "(" in name:
             raise _Unknown(f"its {what} depends on {name}")
 
 
 class _Trace:
-    """Expressions of one element over a DAG of their own: x, v, and names."""
+    """Expressions of one element over a DAG of their own, with symbols x, v and names."""
 
-    def __init__(self, model: System) -> None:
+    def __init__(self, system: System) -> None:
         self.dag = Dag()
         self.calculus = Calculus(self.dag)
         self.x = self.dag.symbol(X)
-        self.inputs = {quantity.name for quantity in model.inputs}
-        self.positions = {q.name for joint in model.joints for q in joint.positions()}
+        self.inputs = {quantity.name for quantity in system.inputs}
+        self.positions = {q.name for joint in system.joints for q in joint.positions()}
         self._residues = Residues()
 
     def value(self, given: Any) -> Scalar:
-        """An expression in x and v."""
+        """The node of an expression in x, v and names."""
         known = {name: self.dag.symbol(NAME, name) for name in names_in(given)}
         values = {**known, "x": self.x, "v": self.dag.symbol(RATE)}
         return resolver(self.dag, values)(given)
 
     def at_rest(self, f: Scalar) -> Scalar:
-        """A tension with rates, inputs and what networks say at zero.
+        """A tension with rates, inputs and variables of networks set to zero.
 
         Raises:
-            _Unknown: it has no value there.
+            _Unknown: it is not finite there.
         """
         moving = [s for s in self.calculus.support(f) if s[0] == RATE or self._moves(s[1])]
         try:
@@ -213,10 +218,10 @@ class _Trace:
         )
 
     def without_time(self, f: Scalar) -> Scalar:
-        """A tension less what the time alone makes.
+        """A tension less its part that depends on time alone.
 
         Raises:
-            _Unknown: the time changes its slope.
+            _Unknown: its slope with respect to x depends on time.
         """
         time = (NAME, "t")
         if time not in self.calculus.support(f):
@@ -230,7 +235,12 @@ class _Trace:
         return still
 
     def equal(self, a: Scalar, b: Scalar) -> bool:
-        """Whether two scalars are the same function: exactly, or wherever both are finite."""
+        """Whether two scalars are the same function.
+
+        Args:
+            a: a node of the trace.
+            b: another one; they are compared exactly, then at random points where both are finite.
+        """
         if not self._residues(a - b):
             return True
         draw = random.Random(0)

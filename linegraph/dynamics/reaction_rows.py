@@ -18,7 +18,12 @@ if TYPE_CHECKING:
 
 
 def where(restriction: Restriction, joint: Joint) -> str:
-    """A reaction direction in the axes of the joint's tail, as far as it is known in numbers."""
+    """A reaction direction in words, in the tail's axes if it is numeric; appended to descriptions.
+
+    Args:
+        restriction: the direction.
+        joint: its alignment gives the joint's axes in the tail's.
+    """
     if isinstance(restriction, Along):
         axis = restriction.direction
     elif isinstance(restriction, Upright | Unturned):
@@ -34,7 +39,16 @@ def where(restriction: Restriction, joint: Joint) -> str:
 
 
 def rows_of(closure: Closure, at: Instant) -> tuple[ReactionRow, ...]:
-    """All rows of a chord at an instant, over any algebra."""
+    """All rows of a chord at an instant, over any algebra.
+
+    Args:
+        closure: the joint or constraint.
+        at: poses of tail and head in ground axes, prescribed values, and the algebra.
+
+    Returns:
+        One row per constraint: residual of position, unit force and torque on the head about its
+            origin, and prescribed rate.
+    """
     component = closure.component
     if isinstance(component, Constraint):
         return component.rows(at)
@@ -47,7 +61,7 @@ def rows_of(closure: Closure, at: Instant) -> tuple[ReactionRow, ...]:
 
 
 def _row(restriction: Restriction, algebra: Algebra, tail: Pose, head: Pose) -> ReactionRow:
-    """A reaction direction at a place of tail and head."""
+    """The row of one reaction direction, for given poses of tail and head."""
     line = subtract(head.origin, tail.origin)
     if isinstance(restriction, Along):
         direction = times(tail.rotation, restriction.direction)
@@ -65,7 +79,7 @@ def _row(restriction: Restriction, algebra: Algebra, tail: Pose, head: Pose) -> 
 
 
 def _upright(axis: int, tail: Pose, head: Pose) -> ReactionRow:
-    """The head's z along the tail's."""
+    """The head's z must be parallel to the tail's and of the same sense."""
     x, y, z = transpose(tail.rotation)
     leaning = transpose(head.rotation)[2]
     lean = -dot(y, leaning) if axis == 0 else dot(x, leaning)
@@ -73,7 +87,7 @@ def _upright(axis: int, tail: Pose, head: Pose) -> ReactionRow:
 
 
 def _unturned(axis: int, tail: Pose, head: Pose) -> ReactionRow:
-    """No turn at all: the vector of the rotation from tail to head, of length 2 tan(angle / 2)."""
+    """No relative rotation: component of the rotation vector of length 2 tan(angle / 2)."""
     a, b = transpose(tail.rotation), transpose(head.rotation)
     j, k = (axis + 1) % 3, (axis + 2) % 3
     cosines = 1 + (dot(a[0], b[0]) + dot(a[1], b[1]) + dot(a[2], b[2]))
@@ -81,7 +95,7 @@ def _unturned(axis: int, tail: Pose, head: Pose) -> ReactionRow:
 
 
 def _thread(advance: Scalar, algebra: Algebra, tail: Pose, head: Pose) -> ReactionRow:
-    """A screw, whatever number of full turns it has made."""
+    """A screw; any number of full turns is allowed."""
     axis = times(tail.rotation, (0, 0, 1))
     shift = dot(axis, subtract(head.origin, tail.origin))
     torque = negate(scale(advance, axis))
@@ -91,12 +105,12 @@ def _thread(advance: Scalar, algebra: Algebra, tail: Pose, head: Pose) -> Reacti
 
 
 def _wrapped(algebra: Algebra, angle: Scalar) -> Scalar:
-    """An angle less the full turns in it."""
+    """An angle without its full turns."""
     return algebra.function("atan2", algebra.sin(angle), algebra.cos(angle))
 
 
 def _driven(joint: Joint, at: Instant) -> list[ReactionRow]:
-    """Rows that prescribe a chord's own coordinates; of angles, full turns do not count."""
+    """Rows that prescribe a chord's own coordinates; full turns of angles do not count."""
     rotation, displacement = seen(at.tail, at.head)
     measured = joint.measured(at.algebra, rotation, displacement)
     duals = joint.duals(at.algebra, rotation, displacement)

@@ -1,7 +1,8 @@
-"""Whether a mass matrix can be inverted: every coordinate must move some inertia.
+"""Whether a mass matrix is regular: every velocity must move some inertia.
 
-M, h, inverse dynamics, kinematics and pictures exist of every model; only what divides by M needs it regular.
-So nothing is refused before something that divides is asked for, and then once, with all joints at fault.
+M, h, inverse dynamics, kinematics and pictures exist for every model; only functions that divide by M
+need it to be regular. So nothing is refused until such a function is requested, and then all joints at
+fault are named at once.
 """
 
 from __future__ import annotations
@@ -24,20 +25,20 @@ if TYPE_CHECKING:
     Entry = tuple[int, int, float]
 
 SINGULAR = 1e-13
-"""A pivot of M below this fraction of what it was made of is zero up to rounding."""
+"""A pivot of M below this fraction of the terms it is the sum of is zero up to rounding."""
 
 DUST = 1e-14
-"""An arm of this fraction of the greatest length in a model is rounding."""
+"""An arm below this fraction of the greatest length in a model is rounding."""
 
 
 @dataclass(frozen=True)
 class Idle:
-    """A velocity along which nothing is accelerated, so that M cannot be inverted.
+    """A velocity that accelerates nothing, so that M is singular.
 
     Attributes:
         kind: of its component: ``joint``, ``capacitor``, ...
         name: of its component.
-        moved: the link that a joint moves, or the quantity that a component should store.
+        moved: the link that the joint moves, or the quantity that the component should store.
     """
 
     kind: str
@@ -56,17 +57,18 @@ def require_motion(tree: KinematicTree) -> None:
 
 
 def massless(tree: KinematicTree, added: Callable[[], Sequence[Entry]]) -> tuple[Idle, ...]:
-    """The joints of a tree without loops that move no inertia of their own: locked, they leave M regular.
+    """The joints of an open tree that move no inertia of their own; with them locked, M is regular.
 
-    Bodies with mass and inertia in every direction make M regular by themselves; only where some body
-    lacks them is M factored, at two random states, so that no special position decides.
+    If all bodies have mass and inertia in every direction, M is regular. Only otherwise is M factored,
+    at two random states, so that no special position decides.
 
     Args:
         tree: the links in numbers.
-        added: what networks add to M, as (row, column, value); asked only where bodies alone do not suffice.
+        added: returns the entries that networks add to M, as (row, column, value); called only if
+            bodies alone do not suffice.
 
     Raises:
-        ModelError: a joint moves a mass or an inertia that is negative.
+        ModelError: a joint moves a negative mass or inertia.
     """
     if all(is_solid(link) for link in tree.links):
         return ()
@@ -84,13 +86,13 @@ def massless(tree: KinematicTree, added: Callable[[], Sequence[Entry]]) -> tuple
 def refusal(
     idle: Sequence[Idle], functions: Sequence[str], *, closed: bool = False, asked: bool = True
 ) -> ModelError:
-    """What to tell of functions that divide by a singular M: one message with all that is at fault.
+    """The error for functions that divide by a singular M: one message that names all joints at fault.
 
     Args:
-        idle: what is, not empty.
+        idle: the velocities that accelerate nothing; not empty.
         functions: those that divide by M.
-        closed: whether loops decide what may move.
-        asked: whether they are refused, not left out of what else is written.
+        closed: whether there are loops, which restrict what may move.
+        asked: whether the functions were requested by name, not just left out of a file.
     """
     first, kind = idle[0], idle[0].kind
     one = len(functions) == 1
@@ -122,7 +124,7 @@ def refusal(
 
 
 def cause(idle: Sequence[Idle]) -> str:
-    """Why M is singular, in one clause."""
+    """The reason for a singular M, in one clause."""
     joints = [f'"{x.name}"' for x in idle if x.kind == "joint"]
     stores = [f'{x.moved} of {x.kind} "{x.name}"' for x in idle if x.kind != "joint"]
     one = len(joints) == 1
@@ -134,19 +136,19 @@ def cause(idle: Sequence[Idle]) -> str:
 
 
 def listed(names: Sequence[str]) -> str:
-    """Names in a sentence."""
+    """Names joined as in a sentence: "a, b and c"."""
     return ", ".join(names[:-1]) + " and " * (len(names) > 1) + names[-1]
 
 
-def _nothing(model: System) -> str:
-    """What to tell of a model without states."""
-    if not model.components:
+def _nothing(system: System) -> str:
+    """The message for a model without states."""
+    if not system.components:
         return "no joint can move: there is nothing to derive"
     return "has no state: nothing in it moves or stores energy, so there is nothing to integrate"
 
 
 def _negative(link: Link) -> ModelError:
-    """What to tell of a link that a coordinate moves with less than no inertia."""
+    """The error for a link with a negative mass or inertia."""
     problem = f"moves a mass or inertia that is negative ({link.name})"
     return ModelError(
         f'joint "{link.joint.name}"', f"{problem}: the mass matrix is not positive definite"
@@ -154,7 +156,10 @@ def _negative(link: Link) -> ModelError:
 
 
 def is_solid(link: Link) -> bool:
-    """Whether mass and central inertia are positive, with a margin, and the joint's freedoms independent."""
+    """Whether mass and central inertia are positive, with a margin, and the joint's freedoms independent.
+
+    The leading minors of the central inertia must be positive (Sylvester's criterion).
+    """
     m, (x, y, z), *_ = link.moments
     xx, xy, xz, yy, yz, zz = link.moments.inertia
     if m <= 0 or link.joint.singular:
@@ -187,10 +192,10 @@ def _failing(tree: KinematicTree, seed: int, added: Sequence[Entry]) -> tuple[li
 
 
 def _scales(state: TreeState) -> list[float]:
-    """What each coordinate's inertia would be in the worst direction: zero is judged beside it.
+    """The inertia of each velocity in the worst direction: the scale by which a pivot is judged zero.
 
-    A turn about any axis through the joint, with the mass as far from it as it is, and a shift of all mass.
-    An arm that is rounding beside the model's own lengths is none.
+    It is that of a turn about any axis through the joint, with all mass at its actual distance, plus
+    that of a shift of all mass. Arms that are rounding relative to the model's lengths count as zero.
     """
     tree = state.tree
     scales = [0.0] * len(tree.velocities)
@@ -207,7 +212,7 @@ def _scales(state: TreeState) -> list[float]:
 
 
 def _reach(tree: KinematicTree) -> float:
-    """The greatest length in a model: an arm from joint to joint or to a mass centre."""
+    """The greatest length in a model (m): an arm between joints, or from a joint to a mass centre."""
     arms = [math.hypot(*link.at) for link in tree.links]
     masses = [link.moments for link in tree.links if link.moments.mass]
     arms += [math.hypot(*m.first) / abs(m.mass) for m in masses]
@@ -217,10 +222,10 @@ def _reach(tree: KinematicTree) -> float:
 def _failing_pivots(
     m: list[list[float]], scales: list[float], outward: list[int]
 ) -> tuple[list[int], list[int]]:
-    """M = L^T D L from the leaves to the root: pivots that are dust, left out, and the first negative one.
+    """Factor M = Lᵀ D L from the leaves: the pivots that are rounding, and the first negative one.
 
-    A pivot of zero has a row of zeros beside it as long as none is negative: what is left is factored as if
-    its coordinate were locked.
+    As long as no pivot is negative, a zero pivot has a zero row beside it; it is left out, and the rest
+    is factored as if its coordinate were locked.
     """
     m = [list(row) for row in m]
     dust: list[int] = []
@@ -240,7 +245,12 @@ def _failing_pivots(
 
 
 def link_of(tree: KinematicTree, index: int) -> Link:
-    """The link that a velocity moves."""
+    """The link that a velocity moves.
+
+    Args:
+        tree: the links.
+        index: place of the velocity in v; one of mechanics.
+    """
     for link in tree.links:
         if any(freedom.index == index for freedom in link.velocities):
             return link

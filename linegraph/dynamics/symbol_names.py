@@ -1,4 +1,4 @@
-"""What the symbols of a derivation are called."""
+"""Names of the symbols in a derivation."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ MULTIPLIERS = "lam"
 
 
 def symbol_names(derivation: Formulated) -> dict[str, tuple[str, ...]]:
-    """The names of all entries of each argument, no two alike, and none that the model declares.
+    """The names of all entries of each argument: distinct, and different from all declared names.
 
-    Coordinates and velocities have their own names, the rate of a coordinate x is ``x_dot``. Whatever a
-    derivation adds has the first of these names that nothing else has: a state of a network its own name,
-    then ``state_v_C``; an acceleration ``a_x``, ``x_ddot`` (``a_w``, ``w_dot`` where w is no rate); an effort
-    ``u_x``, ``effort_x``; a multiplier and an unknown of an algebraic loop its own name, then that name after
-    ``lam_`` or ``loop_``; then the last of these with a number.
+    Coordinates and velocities keep their own names; the rate of a coordinate x is ``x_dot``. Any other
+    symbol gets the first free name of a list: a state of a network its own name, then ``state_v_C``; an
+    acceleration ``a_x``, ``x_ddot`` (``a_w``, ``w_dot`` if w is no rate of a coordinate); an effort
+    ``u_x``, ``effort_x``; a multiplier and an unknown of an algebraic loop its own name, then that name
+    after ``lam_`` or ``loop_``; after these, the last one with a number.
 
     Raises:
         ModelError: the model declares a name twice; names both owners.
@@ -67,7 +67,7 @@ def symbol_names(derivation: Formulated) -> dict[str, tuple[str, ...]]:
 def _of_networks(derivation: Formulated) -> Iterator[Claim]:
     """The names that networks add: their states, and derivatives of inputs that they need.
 
-    A state whose name a parameter has gives way: in emitted code they are different arguments.
+    A state with the name of a parameter is left out: in emitted code they are different arguments.
     """
     network = derivation.formulation.network
     if network is None:

@@ -1,7 +1,7 @@
-"""Mechanics and networks in one: ``𝓜(x) ẋ = f`` with the mass matrix as a block of 𝓜.
+"""Mechanics and networks together: ``𝓜(x) ẋ = f``, with the mass matrix as a block of 𝓜.
 
-What a network stores adds to the mass matrix where it is tied to joints, as a rotor behind its gear does, and
-stands beside it where it is not.
+Stores of a network that are tied to joints, such as a rotor behind its gear, add to the mass matrix;
+others get rows and columns of their own.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Entries = list[tuple[int, int, "Scalar"]]
 
 
 def network_entries(exchange: Exchange | None) -> Entries:
-    """What networks add to the mass matrix: row, column and entry; places may repeat."""
+    """Entries that networks add to the mass matrix: row, column, value; places may repeat."""
     if exchange is None:
         return []
     set_label(exchange.state.algebra, "network, what it stores")
@@ -34,7 +34,12 @@ def network_entries(exchange: Exchange | None) -> Entries:
 def united_mass_matrix(
     state: TreeState, entries: Iterable[tuple[int, int, Scalar]]
 ) -> list[list[Scalar]]:
-    """𝓜: the mass matrix, and what networks add."""
+    """𝓜: the mass matrix with the entries of networks added.
+
+    Args:
+        state: the tree at (q, v).
+        entries: row, column and value of each addition.
+    """
     rows = mass_matrix(state)
     for i, j, entry in entries:
         rows[i][j] = rows[i][j] + entry
@@ -47,7 +52,14 @@ def united_inverse_dynamics(
     a: Sequence[Scalar],
     acting: Applied,
 ) -> list[Scalar]:
-    """``𝓜 a + h``, of mechanics without forming its mass matrix."""
+    """Generalised forces ``𝓜 a + h``, without forming the mass matrix of mechanics.
+
+    Args:
+        state: the tree at (q, v).
+        entries: row, column and value of each addition by networks.
+        a: the accelerations v̇, rates of network states included.
+        acting: applied forces, subtracted, in the working frames of the state.
+    """
     found = orthogonality.inverse_dynamics(state, a, acting)
     set_label(state.algebra, "network, what it stores")
     for i, j, entry in entries:

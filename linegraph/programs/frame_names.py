@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from linegraph.model.system import System
 
 
-def named_frames(model: System, frames: Iterable[str]) -> tuple[NamedFrame, ...]:
+def named_frames(system: System, frames: Iterable[str]) -> tuple[NamedFrame, ...]:
     """Bodies and ``body.frame`` with their identifiers.
 
     Raises:
@@ -23,6 +23,6 @@ def named_frames(model: System, frames: Iterable[str]) -> tuple[NamedFrame, ...]
 
     names = list(dict.fromkeys((frames,) if isinstance(frames, str) else frames))
     for name in names:
-        require_frame(model, name)
+        require_frame(system, name)
     called = naming.identifiers(names, "frame", naming.stem)
     return tuple(NamedFrame(*pair) for pair in zip(called, names, strict=True))

@@ -261,9 +261,9 @@ def _coordinate_rates(f: Workspace) -> Program:
     return f.program("coordinate_rates", about, ("q", "v"), (result,))
 
 
-def energy_remark(model: System, network: Network | None) -> str:
+def energy_remark(system: System, network: Network | None) -> str:
     """Which elements and components store energy that is not known, and why."""
-    found = [f"{who} ({why})" for who, why in unknown(model).items()]
+    found = [f"{who} ({why})" for who, why in unknown(system).items()]
     if network is not None:
         names = [b.component for b in network.branches if b.component.name in network.unknown]
         found += [f"{c.kind} {c.name}" for c in dict.fromkeys(names)]
