@@ -1,1 +1,1 @@
-"""Derivations over floats: the reference, positions that close all loops, one state in two trees."""
+"""Derivations over floats: the reference, positions that close all loops, change of coordinates."""

@@ -1,8 +1,8 @@
-"""Assembly: a position in which all loops close, and what the constraints are worth there.
+"""Assembly: a position in which all loops close, and the rank and redundancy of the constraints there.
 
-Newton's method from the joints' `start` values, and where that fails from places around them. At what it
-finds, and at two places near it that close the loops too, the Jacobian tells how many constraints are
-independent: no special position decides.
+Newton's method starts from the joints' `start` values and, if that fails, from places around them. The
+rank of the Jacobian is the greatest of three: at the position found and at two others nearby that also
+close the loops, so that no special position decides.
 """
 
 from __future__ import annotations
@@ -27,29 +27,30 @@ if TYPE_CHECKING:
     Array = Any
 
 ROUNDING = 1e-13
-"""A pivot of the mass matrix on the motions allowed that is this part of what it was made of is zero."""
+"""A pivot of the mass matrix on the admissible motions below this fraction of its terms is zero."""
 
 OPENING = 2 * CLOSED
-"""A gap that opens faster, in pure numbers, is no rounding: both ends of a loop may be off by `CLOSED`."""
+"""Greatest singular value of J, in pure numbers, that is still rounding: both ends of a loop may be off by
+`CLOSED`."""
 
 INDEPENDENT = (1e-4, 1e-6)
-"""Velocities determine the others if columns of J are farther from dependent than the first of these that
-some are."""
+"""Least distance from linear dependence for columns of J that determine the other velocities: the first
+value with which enough columns are found."""
 
 
 @dataclass(frozen=True)
 class Assembly:
-    """A position that closes all loops.
+    """A position that closes all loops, and the constraints there.
 
     Attributes:
         q: the coordinates.
         rank: the number of independent constraints.
-        position_rank: how many of those that have an equation of position are independent.
-        redundant: how many constraints follow from the others.
+        position_rank: the number of independent constraints among the holonomic ones.
+        redundant: the number of constraints that follow from the others.
         freedoms: the degrees of freedom: velocities less independent constraints.
-        unique: for each constraint whether its multiplier is the only one possible.
-        independent: velocities that the others follow from; the first such set in declared order.
-        massless: the joints of motions that the constraints allow and nothing with mass takes part in.
+        unique: for each constraint, whether its multiplier is determined.
+        independent: velocities that determine all others; the first such set in declared order.
+        massless: the joints of admissible motions in which nothing with mass takes part.
     """
 
     q: list[float]
@@ -68,16 +69,17 @@ def assemble(
     seed: int = 0,
     start: Sequence[float] | None = None,
 ) -> Assembly:
-    """Find a position that closes all loops, at t = 0 and with inputs zero.
+    """Find a position that closes all loops, at t = 0 and with all inputs zero.
 
     Args:
-        derivation: a model.
-        hold: coordinates that keep the value given, by name.
-        seed: of the places tried where the start does not lead to one.
-        start: where to begin instead of the joints' `start` values.
+        derivation: a system with its trees.
+        hold: coordinates to keep at given values, by name (rad or m).
+        seed: of the random places that are tried if the start fails.
+        start: all coordinates to start from, instead of the joints' `start` values.
 
     Raises:
-        ModelError: there is none, or what is prescribed contradicts itself; names the edges.
+        ModelError: there is no such position, or prescribed motions contradict each other; names the
+            edges.
     """
     search = Search(derivation, dict(hold or {}), seed)
     return _Judgement(search).of(search.position(start))
@@ -89,10 +91,13 @@ def consistent(
     """A random state that satisfies the constraints, near the assembly.
 
     Args:
-        derivation: a model with constraints.
-        near: where its loops are closed.
-        numeric: it at the time and for the inputs and parameters wanted.
-        draw: where randomness comes from.
+        derivation: a system with constraints.
+        near: coordinates near which its loops close.
+        numeric: its equations at the required time, inputs and parameters.
+        draw: source of randomness.
+
+    Returns:
+        q and v. The velocity is the nearest admissible one, in pure numbers, to a random vector.
     """
     search = Search(derivation, {}, draw.randrange(2**31), numeric)
     near = list(near)
@@ -110,7 +115,17 @@ def saddle(
     J: Sequence[Sequence[float]],
     bias: Sequence[float],
 ) -> tuple[list[float], list[float]]:
-    """v̇ and λ of ``M v̇ = right + J^T λ``, ``J v̇ = bias``, λ of least norm where it is not unique."""
+    """Accelerations and multipliers of a constrained system: ``M v̇ = right + Jᵀ λ``, ``J v̇ = bias``.
+
+    If constraints are redundant, λ is not unique. Least squares then choose the λ of least norm, which
+    does not depend on the order of the constraints, as dropping some of them would.
+
+    Args:
+        M: mass matrix, n x n.
+        right: Q - h, n entries.
+        J: constraints x n.
+        bias: γ, one entry per constraint.
+    """
     import numpy
 
     n, m = len(right), len(bias)
@@ -123,7 +138,7 @@ def saddle(
 
 
 class _Judgement:
-    """What the constraints are worth, over floats."""
+    """Rank, redundancy and consistency of the constraints, over floats."""
 
     def __init__(self, search: Search) -> None:
         self.search = search
@@ -134,7 +149,7 @@ class _Judgement:
         self.derivation = search.derivation
 
     def of(self, q: list[float]) -> Assembly:
-        """The position with what the constraints are worth around it."""
+        """The assembly at a position, with the constraints judged around it."""
         np = self.np
         places = [q, *(x for _ in range(2) if (x := self.search.beside(q)) is not None)]
         best = max(self._rank_at(place) for place in places)
@@ -154,7 +169,7 @@ class _Judgement:
         return Assembly(place, *counts, unique, independent, massless)
 
     def _require_decided(self, J: Array, rank: int) -> None:
-        """Refuse loops that close where they are and open as they move, by too little to be held."""
+        """Refuse loops that close in one position and open in motion, by a gap too small to resist it."""
         left, values, _ = self.np.linalg.svd(J)
         opening = float(max(values[rank:], default=0.0))
         if opening <= OPENING:
@@ -172,7 +187,7 @@ class _Judgement:
         raise ModelError(self.search.who(worst.component), problem)
 
     def _independent(self, J: Array, rank: int) -> list[int]:
-        """Velocities to keep: those declared last give way as long as the constraints determine them."""
+        """Velocities to keep: the last declared become dependent as long as constraints determine them."""
         count = self.tree.layout.mechanical
         for apart in INDEPENDENT:
             dependent = apart_columns(J, list(reversed(range(count))), rank, apart)
@@ -204,7 +219,7 @@ class _Judgement:
                 raise ModelError(self.search.who(whole[0]), problem)
 
     def _massless(self, q: list[float], rank: int) -> list[int]:
-        """The velocities in motions that the constraints allow and nothing with mass takes part in."""
+        """The velocities in admissible motions in which nothing with mass takes part."""
         np, count = self.np, self.tree.layout.mechanical
         sizes = self.search.of_velocities[:count]
         M = np.array(self._inertia(q), float) * sizes * sizes[:, None]
@@ -215,7 +230,7 @@ class _Judgement:
         return sorted(found)
 
     def _inertia(self, q: list[float]) -> list[list[float]]:
-        """M of mechanics, what networks add to it where they are defined."""
+        """M of mechanics, including the entries of networks if they are defined there."""
         size = self.tree.layout.mechanical
         try:
             return [row[:size] for row in self.numeric.mass_matrix(q)[:size]]
@@ -223,7 +238,7 @@ class _Judgement:
             return self.numeric.mechanical_mass_matrix(q)
 
     def _idle(self, velocities: Sequence[int]) -> tuple[Idle, ...]:
-        """The joints of these velocities, each once."""
+        """The joints of some velocities, each once."""
         links = {link.name: link for link in (link_of(self.tree, k) for k in velocities)}
         return tuple(Idle("joint", link.joint.name, name) for name, link in links.items())
 

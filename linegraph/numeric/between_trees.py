@@ -1,7 +1,7 @@
 """The same state in the coordinates of another tree.
 
-The motion of the bodies is what two trees have in common: from it every joint's coordinates are measured,
-angles up to full turns.
+Two trees of one model share the motion of the bodies. From it every joint's coordinates are measured;
+angles are known up to full turns.
 """
 
 from __future__ import annotations
@@ -31,7 +31,13 @@ State = tuple[list[float], list[float]]
 
 
 def transfer(source: Numeric, q: Sequence[float], v: Sequence[float], target: Numeric) -> State:
-    """The state (q, v) of one derivation as (q, v) of another of the same model.
+    """The state (q, v) of one derivation in the coordinates of another derivation of the same model.
+
+    Args:
+        source: equations of the first derivation.
+        q: its coordinates.
+        v: its velocities.
+        target: equations of the second derivation, at the same time and inputs.
 
     Example:
         >>> from linegraph import Model, derive
@@ -58,7 +64,7 @@ def transfer(source: Numeric, q: Sequence[float], v: Sequence[float], target: Nu
 def _copied(
     source: Numeric, q: Sequence[float], v: Sequence[float], link: Link, found: State
 ) -> bool:
-    """Take over the coordinates of a joint that has the same ones in both trees, full turns included."""
+    """Copy the coordinates of a joint that has the same ones in both trees, full turns included."""
     place = source.tree.layout.own(link.joint.name)
     plain = place is not None and not (place.level or link.place.level or place.drive)
     if not plain or place is None or len(place.positions) != len(link.place.positions):
@@ -75,7 +81,13 @@ def _copied(
 
 
 def body_frames(numeric: Numeric, q: Sequence[float], v: Sequence[float]) -> dict[str, GroundFrame]:
-    """The motion of every body's own frame."""
+    """The motion of every body's own frame, in ground axes.
+
+    Args:
+        numeric: equations over floats.
+        q: the coordinates.
+        v: the velocities.
+    """
     tree = numeric.tree
     moving = frames(numeric.at(q, v).state)
     return {
@@ -85,7 +97,7 @@ def body_frames(numeric: Numeric, q: Sequence[float], v: Sequence[float]) -> dic
 
 
 def _link_frame(tree: KinematicTree, index: int, bodies: dict[str, GroundFrame]) -> GroundFrame:
-    """A link's working frame, from a body that is part of it."""
+    """A link's working frame, from one of the bodies welded into it."""
     body, pose = next((b, pose) for b, (link, pose) in tree.bodies.items() if link == index)
     back = transpose(pose.rotation)
     x, y, z = times(back, pose.at)
@@ -95,7 +107,7 @@ def _link_frame(tree: KinematicTree, index: int, bodies: dict[str, GroundFrame])
 def _measure(
     numeric: Numeric, link: Link, near: GroundFrame, far: GroundFrame, found: State
 ) -> None:
-    """Write a joint's coordinates and velocities into the state."""
+    """Measure a joint's coordinates and velocities, and write them into the state."""
     if link.place.drive or any(f.ratio != 1 or f.offset != 0 for f in link.place.positions):
         return
     joint = link.joint
@@ -119,7 +131,14 @@ def _measure(
 
 
 def coordinates_at(algebra: Any, joint: Any, rotation: Matrix, displacement: Any) -> list[float]:
-    """The coordinates of a joint at a relative place, quaternions included."""
+    """The coordinates of a joint at a relative pose, quaternions included.
+
+    Args:
+        algebra: floats.
+        joint: a joint in the tree's algebra.
+        rotation: from head components to tail components.
+        displacement: from tail origin to head origin, in the tail's axes (m).
+    """
     if isinstance(joint, Spherical | Free) and joint.angles is None:
         quaternion = quaternion_of(rotation)
         return quaternion if isinstance(joint, Spherical) else [*displacement, *quaternion]
@@ -127,7 +146,10 @@ def coordinates_at(algebra: Any, joint: Any, rotation: Matrix, displacement: Any
 
 
 def quaternion_of(rotation: Matrix) -> list[float]:
-    """The unit quaternion (x, y, z, w) of a rotation, w not negative, from its largest entry.
+    """The unit quaternion (x, y, z, w) of a rotation, with w not negative.
+
+    Each row of 4 q qᵀ gives q up to a factor. The row of the largest diagonal entry is used: the
+    formula from the trace alone divides by w, which is zero for half turns.
 
     Example:
         >>> from linegraph.spatial.rotation import from_quaternion

@@ -1,4 +1,4 @@
-"""What a formulated system determines once: the assembly, whether M can be inverted, names of symbols."""
+"""Results that a formulated system determines once: assembly, regularity of M, names of symbols."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Derived(Formulated):
-    """A system whose equations of motion exist, and what is derived of it once."""
+    """A system whose equations of motion exist, with everything that is derived once from it."""
 
     def __repr__(self) -> str:
-        """Its name and size."""
+        """The name of the system and its numbers of coordinates, velocities and inputs."""
         tree = self.structure
         sizes = f"{len(tree.positions)} q, {len(tree.velocities)} v, {len(tree.inputs)} u"
         return f"<Derivation of {self.system.name}: {sizes}>"
 
     @cached_property
     def symbol_names(self) -> dict[str, tuple[str, ...]]:
-        """What the symbols of closed forms are called, by argument; see `symbol_names`."""
+        """The names of all symbols in closed forms, by argument; see `symbol_names`."""
         return symbol_names(self)
 
     def numeric(
@@ -43,21 +43,21 @@ class Derived(Formulated):
         t: float = 0.0,
         u: Sequence[float] | None = None,
     ) -> Numeric:
-        """The numeric reference: the same derivation over floats, at a time and for inputs.
+        """The equations over floats, at a time and for inputs: the numeric reference.
 
         Args:
-            parameters: values in place of the model's own.
+            parameters: values instead of the model's own.
             t: the time (s).
-            u: the inputs; all zero if left out.
+            u: the inputs; all zero if omitted.
 
         Raises:
-            ModelError: a parameter has no value, or there are more or fewer inputs.
+            ModelError: a parameter has no value, or the number of inputs is wrong.
         """
         return over_floats(self, parameters, t, u)
 
     @cached_property
     def idle(self) -> tuple[Idle, ...]:
-        """Along what nothing is accelerated at the parameters' own values: joints first, then stores.
+        """Velocities that accelerate nothing at the default parameters: joints first, then empty stores.
 
         Raises:
             ModelError: a mass or an inertia is negative, or the loops cannot be closed.
@@ -68,12 +68,17 @@ class Derived(Formulated):
         return joints + self._empty_stores
 
     def no_inverse(self, functions: Sequence[str], *, asked: bool = True) -> ModelError:
-        """What to tell of functions that divide by a singular M, with its place in the model's file."""
+        """The error for functions that divide by a singular M, with its place in the model's file.
+
+        Args:
+            functions: names of these functions.
+            asked: whether they were requested by name.
+        """
         closed = self.structure.closed
         return placed(refusal(self.idle, functions, closed=closed, asked=asked), self.system)
 
     def require_inverse(self, what: str) -> None:
-        """Refuse what divides by M where M is singular.
+        """Refuse a quantity that divides by M if M is singular.
 
         Raises:
             ModelError: names all joints that move no inertia.
@@ -82,7 +87,7 @@ class Derived(Formulated):
             raise self.no_inverse([what])
 
     def _added(self) -> list[tuple[int, int, float]]:
-        """What networks add to M at a random state; nothing where they are not defined there."""
+        """Entries that networks add to M at a random state; none if they are not defined there."""
         if self.formulation.network is None or not self.valued:
             return []
         return self._network_entries() or []
@@ -97,11 +102,11 @@ class Derived(Formulated):
         try:
             return [(i, j, float(x)) for i, j, x in numeric.at(q, v).stored]
         except (ModelError, ArithmeticError):
-            return None  # no state like any other: what is wrong there is said at run time
+            return None  # undefined at a random state: the emitted function reports it at run time
 
     @cached_property
     def _empty_stores(self) -> tuple[Idle, ...]:
-        """The components of networks whose stores hold nothing at the parameters' own values."""
+        """The components of networks whose stores hold nothing at the default parameters."""
         network = self.formulation.network
         if network is None or not network.states or not self.valued:
             return ()
@@ -127,7 +132,7 @@ class Derived(Formulated):
 
     @cached_property
     def assembled(self) -> Assembly:
-        """The assembly from the model's own start values, which are those of joints."""
+        """The assembly from the model's own start values, which are coordinates of joints."""
         start = None
         if self.formulation.absolute or self.formulation.level:
             tree = tuple(x for x in self.system.choices.tree if not x.endswith("/inertia"))
@@ -138,10 +143,10 @@ class Derived(Formulated):
         return assemble(self, start=start)
 
     def placed_assembly(self, hold: Mapping[str, float]) -> Assembly:
-        """The assembly with some coordinates held, errors with their place in the model's file.
+        """The assembly with some coordinates held; errors have their place in the model's file.
 
         Raises:
-            ModelError: there is none.
+            ModelError: there is no such position.
         """
         try:
             return self.assembly(hold, start=self.assembled.q)
@@ -154,5 +159,14 @@ class Derived(Formulated):
         seed: int = 0,
         start: Sequence[float] | None = None,
     ) -> Assembly:
-        """A position that closes all loops, and what the constraints are worth there; see `assembly`."""
+        """A position that closes all loops, with rank and redundancy of the constraints there.
+
+        Args:
+            hold: coordinates to keep at given values, by name (rad or m).
+            seed: of the random places that are tried if the start fails.
+            start: all coordinates to start from, instead of the joints' `start` values.
+
+        Raises:
+            ModelError: there is no such position, or prescribed motions contradict each other.
+        """
         return assemble(self, hold, seed, start)

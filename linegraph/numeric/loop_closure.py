@@ -25,23 +25,23 @@ if TYPE_CHECKING:
 TRIES = 24
 STEPS = 50
 LARGEST_STEP = 0.6
-"""In rad; of lengths, this part of the loop's own."""
+"""Greatest step of a coordinate: in rad for angles, as a fraction of the loop's length for translations."""
 
 STILL = 1e-14
-"""A gap of this part of a loop's length is no more than rounding: to go on would change nothing."""
+"""A gap below this fraction of the loop's length is rounding; further steps would change nothing."""
 
 
 class Search:
-    """One search.
+    """A search for positions that close all loops.
 
     Args:
-        derivation: a model.
-        hold: coordinates that keep the value given, by name.
-        seed: of the places tried where the start does not lead to one.
-        numeric: the model over floats; default at t = 0 and with inputs zero.
+        derivation: a system with its trees.
+        hold: coordinates to keep at given values, by name (rad or m).
+        seed: of the random places that are tried if the start fails.
+        numeric: the equations over floats; by default at t = 0 and with all inputs zero.
 
     Raises:
-        ModelError: there is no such coordinate.
+        ModelError: a coordinate to hold does not exist.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class Search:
         seed: int,
         numeric: Numeric | None = None,
     ) -> None:
-        """Nothing is tried yet."""
+        """Measure the loops and the held coordinates; no position is tried yet."""
         import numpy
 
         self.np = numpy
@@ -67,7 +67,7 @@ class Search:
                 raise ModelError(f'coordinate "{name}"', f"is none of this tree; known: {known}")
         self.held = {names.index(name): float(value) for name, value in hold.items()}
         held = [e for e in self.equations if e.holonomic]
-        # what an input prescribes is wherever that input says: unless it is known, any position will do
+        # a motion prescribed by input may be anywhere: its constraints are ignored unless inputs are given
         moved = numeric is not None
         self.sought = [k for k, e in enumerate(held) if moved or not self._by_input(e)]
         self.sizes = self.numeric.sizes
@@ -75,7 +75,7 @@ class Search:
         self.of_positions = self._of_positions()
 
     def _of_positions(self) -> list[float]:
-        """What the coordinates are measured by: 1, or the length of their loop."""
+        """The unit of each coordinate: 1, or the length of its loop (m)."""
         found = [1.0] * len(self.tree.positions)
         for link in self.tree.links:
             length = max((self.of_velocities[f.index] for f in link.velocities), default=1.0)
@@ -98,7 +98,11 @@ class Search:
         return 0 <= place < len(given) and given[place] == BY_INPUT
 
     def position(self, given: Sequence[float] | None) -> list[float]:
-        """The first place found."""
+        """The first position found that closes all loops.
+
+        Raises:
+            ModelError: none was found; names the chord with the largest gap and its circuit.
+        """
         start = self._start() if given is None else list(given)
         best: tuple[float, list[float]] | None = None
         undefined: ModelError | None = None
@@ -112,7 +116,7 @@ class Search:
                 if gap < CLOSED and not self._flipped(q):
                     return q
             except (ArithmeticError, ValueError):
-                continue  # two ends of a rod coincide, or the like: begin elsewhere
+                continue  # undefined there, e.g. both ends of a rod coincide: start elsewhere
             except ModelError as error:
                 undefined = error
                 continue
@@ -123,12 +127,12 @@ class Search:
         raise self._refusal(best[1] if best else None)
 
     def _around(self, q: Sequence[float], spread: float) -> list[float]:
-        """A place near another one."""
+        """A random place near another one."""
         sizes = self.of_positions
         return [x + self.draw.uniform(-spread, spread) * s for x, s in zip(q, sizes, strict=True)]
 
     def _start(self) -> list[float]:
-        """The joints' start values, at rest where there are none."""
+        """The joints' start values, or rest positions if there are none."""
         q = [0.0] * len(self.tree.positions)
         resolve = self.numeric.resolve
         for link in self.tree.links:
@@ -145,7 +149,7 @@ class Search:
         return q
 
     def _measured_from_ground(self, q: list[float]) -> None:
-        """Start values are the joints' own: add what their near bodies have turned."""
+        """Add the near bodies' angles to start values, which are the joints' own."""
         for link in self.tree.links:
             if link.place.less[0]:
                 (own,) = link.place.positions
@@ -153,7 +157,11 @@ class Search:
                 q[own.index] += q[own.index] - at[0]
 
     def close(self, q: list[float]) -> float:
-        """Move q onto the constraints as far as that goes; the largest gap that remains, in pure numbers."""
+        """Move q onto the constraints as far as possible, in place; the largest remaining gap.
+
+        Gauss-Newton steps of least norm, halved until the gaps decrease. The gap is in pure numbers
+        (rad, or fractions of the loop's length).
+        """
         np = self.np
         self.tree.normalise(q)
         phi = self._position(q)
@@ -177,7 +185,7 @@ class Search:
         return gap
 
     def _moved(self, q: list[float], step: Any) -> list[float]:
-        """``q + N(q) step``, the step in pure numbers."""
+        """``q + N(q) step``, with the step in pure numbers."""
         rates = self.numeric.coordinate_rates(q, list(step * self.of_velocities))
         moved = [x + dx for x, dx in zip(q, rates, strict=True)]
         for k, value in self.held.items():
@@ -192,7 +200,13 @@ class Search:
         return (gaps / np.array(sizes[: len(gaps)], float))[self.sought]
 
     def rates(self, q: list[float], v: list[float], numeric: Numeric | None = None) -> Any:
-        """J v - b, divided by the sizes of the constraints (1/s)."""
+        """Residuals ``J v - b`` of the constraints of velocity in pure numbers (1/s).
+
+        Args:
+            q: the coordinates.
+            v: the velocities.
+            numeric: equations at another time; by default those of the search.
+        """
         rates = self.np.array((numeric or self.numeric).constraint_rates(q, v), float)
         return rates / of_rows(self._rows(q), self.sizes)
 
@@ -201,7 +215,7 @@ class Search:
         return J.reshape(len(self.equations), len(self.tree.velocities))
 
     def jacobian(self, q: list[float]) -> Any:
-        """J in pure numbers, held coordinates left out of it."""
+        """J in pure numbers, with zero columns for held coordinates."""
         J = pure(self._rows(q), self.sizes)
         for link in self.tree.links:
             for at, rate in zip(link.place.positions, link.velocities, strict=False):
@@ -210,7 +224,7 @@ class Search:
         return J
 
     def _flipped(self, q: list[float]) -> bool:
-        """Whether a chord stands the wrong way round: its equations hold for axes against each other, too."""
+        """Whether a chord is assembled the wrong way round: its equations also hold for opposite axes."""
         chords = self.numeric.chords(q, [0.0] * len(self.tree.velocities))
         return any(self._turned_over(closure, chords) for closure in self.tree.closures)
 
@@ -232,7 +246,13 @@ class Search:
         return bool(max(differences) > 1e-6)
 
     def beside(self, q: list[float], spread: float = 0.05) -> list[float] | None:
-        """Another place that closes the loops, near the first."""
+        """Another position that closes the loops, near the first; None if the attempt fails.
+
+        Args:
+            q: the first position.
+            spread: greatest change of each coordinate, in pure numbers, before the loops are closed
+                again.
+        """
         near = self._around(q, spread)
         for k, value in self.held.items():
             near[k] = value
@@ -242,7 +262,7 @@ class Search:
             return None
 
     def _refusal(self, q: list[float] | None) -> ModelError:
-        """What to tell where no position closes the loops: the worst chord and its circuit."""
+        """The error if no position closes the loops: the chord with the largest gap, and its circuit."""
         if q is None:
             names = dict.fromkeys(e.component for e in self.equations)
             problem = "are not defined at any position tried; give `start` values near one"
@@ -259,7 +279,11 @@ class Search:
         return ModelError(self.who(worst), problem)
 
     def _nearest(self, q: list[float]) -> list[float]:
-        """Where the gaps are least, found by Levenberg's and Marquardt's method from a place nearby."""
+        """A position at which the gaps are least, by the Levenberg-Marquardt method [Marquardt 1963].
+
+        Newton's method stops wherever its step no longer reduces the gaps; that position may be far
+        from the least gap, which the message should report.
+        """
         np, damping = self.np, 1e-3
         phi = self._position(q)
         for _ in range(400):
@@ -276,7 +300,7 @@ class Search:
         return q
 
     def _gap(self, q: list[float]) -> tuple[str, str]:
-        """The chord that is farthest open, and how far: a distance, or an angle where that says more."""
+        """The chord with the largest gap, and the gap: a distance, or an angle if that is larger."""
         phi = self._position(q)
         gaps: dict[tuple[str, bool], list[float]] = {}
         lengths: dict[str, float] = {}
@@ -293,7 +317,7 @@ class Search:
         return name, f"{size * lengths[name]:.3g} m" if far else f"{size:.3g} rad"
 
     def who(self, name: str) -> str:
-        """What messages call a joint or a constraint."""
+        """Kind and name of a joint or constraint, as messages give them."""
         end = self.tree.ends.get(name)
         if end is None:
             return f'relation "{name}"'
@@ -302,7 +326,15 @@ class Search:
 
 
 def least(J: Any, right: Any) -> Any:
-    """The x of least norm with J x = right as nearly as can be; J in pure numbers, so that it has a rank."""
+    """The x of least norm that minimises ``|J x - right|``.
+
+    Singular values below `DEPENDENT` count as zero. J must be in pure numbers, since a threshold is
+    meaningless for a matrix of mixed units.
+
+    Args:
+        J: array, constraints x velocities, in pure numbers.
+        right: array, one entry per constraint.
+    """
     import numpy as np
 
     left, values, along = np.linalg.svd(J, full_matrices=False)
@@ -311,7 +343,7 @@ def least(J: Any, right: Any) -> Any:
 
 
 def at_some_time(derivation: Formulated) -> Numeric:
-    """The numeric reference at t = 0, or later where motions have no derivatives there."""
+    """The numeric reference at t = 0, or later if motions have no derivatives there."""
     try:
         return over_floats(derivation)
     except ModelError as error:
@@ -322,5 +354,5 @@ def at_some_time(derivation: Formulated) -> Numeric:
 
 
 def quoted(names: Sequence[str] | Mapping[str, Any]) -> str:
-    """Names in quotes."""
+    """Names in double quotes, separated by commas."""
     return ", ".join(f'"{name}"' for name in names)

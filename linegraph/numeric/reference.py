@@ -1,4 +1,4 @@
-"""The numeric reference: a derivation run over floats."""
+"""The numeric reference: the equations of motion evaluated over floats."""
 
 from __future__ import annotations
 
@@ -26,111 +26,173 @@ Rows = list[list[float]]
 
 
 class Numeric:
-    """The derivation run over floats: one state at a time, slow, exact to rounding.
+    """The equations of motion over floats: one state at a time, slow, exact up to rounding.
 
     Args:
-        tree: the links, in numbers; its algebra has the time and the inputs.
-        derivation: what it is of; None for a tree that was made otherwise.
+        tree: the links in numbers; its algebra has the time and the inputs.
+        derivation: the derivation that the tree belongs to; None for a tree made in another way.
     """
 
     def __init__(self, tree: KinematicTree, derivation: Formulated | None = None) -> None:
-        """Nothing is evaluated yet."""
+        """Keep the tree; equations are evaluated at a state."""
         self.tree = tree
         self.derivation = derivation
 
     @property
     def algebra(self) -> Floats:
-        """The time and the inputs."""
+        """The algebra of floats, with the time and the inputs."""
         return cast("Floats", self.tree.algebra)
 
     @property
     def parameters(self) -> Mapping[str, Scalar]:
-        """The parameters' values."""
+        """The parameters' values, by name."""
         return self.tree.parameters
 
     @property
     def t(self) -> float:
-        """The time (s)."""
+        """The time at which everything is evaluated (s)."""
         return float(self.algebra.arguments.get("t", 0.0))
 
     def at_time(self, t: float) -> Numeric:
-        """The same at another time (s)."""
+        """The equations at another time (s), with the same parameters and inputs."""
         if self.derivation is None:
             return self
         return over_floats(self.derivation, self.parameters, t, self.algebra.arguments["u"])
 
     @property
     def resolve(self) -> Callable[[Any], Scalar]:
-        """From model values to numbers."""
+        """Conversion of model values to numbers."""
         return self.tree.resolve
 
     def at(self, q: Sequence[float], v: Sequence[float] | None = None) -> StateEquations:
-        """The equations at a state; at rest where no v is given."""
+        """The equations at a state.
+
+        Args:
+            q: the coordinates, one per `tree.positions` (rad, m; quaternions x, y, z, w).
+            v: the velocities, one per `tree.velocities` (rad/s, m/s); zero if omitted.
+        """
         velocities = [0.0] * len(self.tree.velocities) if v is None else v
         return StateEquations(self.tree, q, velocities)
 
     @cached_property
     def sizes(self) -> ConstraintSizes:
-        """What constraints and velocities are measured by."""
+        """The sizes by which constraints and velocities become pure numbers."""
         return sizes(self.tree)
 
     def mass_matrix(self, q: Sequence[float], v: Sequence[float] | None = None) -> Rows:
-        """M(q); of networks whose stores depend on their states M(q, v)."""
+        """Mass matrix M(q), n x n; M(q, v) if stores of networks depend on their states.
+
+        Args:
+            q: the coordinates.
+            v: the velocities; zero if omitted.
+        """
         return self.at(q, v).mass_matrix
 
     def mechanical_mass_matrix(self, q: Sequence[float]) -> Rows:
-        """Its part of mechanics, without what networks add."""
+        """The mass matrix of mechanics alone, without states of networks and their entries."""
         rows, size = mass_matrix(self.at(q).state), self.tree.layout.mechanical
         return [row[:size] for row in rows[:size]]
 
     def exchange(self, q: Sequence[float], v: Sequence[float]) -> Exchange | None:
-        """The networks at a state."""
+        """The networks at a state; None if there are none.
+
+        Args:
+            q: the coordinates.
+            v: the velocities.
+        """
         return self.at(q, v).networks
 
     def bias(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
-        """h(q, v)."""
+        """Bias h(q, v): generalised forces at v̇ = 0 (N m or N).
+
+        Args:
+            q: the coordinates.
+            v: the velocities.
+        """
         return self.at(q, v).bias
 
     def inverse_dynamics(
         self, q: Sequence[float], v: Sequence[float], a: Sequence[float]
     ) -> list[float]:
-        """M a + h."""
+        """Generalised forces ``M a + h`` (N m or N).
+
+        Args:
+            q: the coordinates.
+            v: the velocities.
+            a: the accelerations v̇.
+        """
         return self.at(q, v).inverse_dynamics(a)
 
     def forces(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
-        """Q: joint efforts, and what inputs drive."""
+        """Generalised forces Q: joint efforts, and elements and loads that inputs drive (N m or N).
+
+        Args:
+            q: the coordinates.
+            v: the velocities.
+        """
         return self.at(q, v).forces
 
     def coordinate_rates(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
-        """N(q) v."""
+        """Rates of the coordinates, ``q̇ = N(q) v``.
+
+        Args:
+            q: the coordinates.
+            v: the velocities.
+        """
         return self.at(q, v).coordinate_rates
 
     def constraints(self, q: Sequence[float]) -> list[float]:
-        """φ(q, t), one for each constraint with an equation of position."""
+        """Residuals φ(q, t), one per holonomic constraint (m or rad)."""
         return self.at(q).constraints
 
     def constraint_jacobian(self, q: Sequence[float]) -> Rows:
-        """J(q, t)."""
+        """Jacobian J(q, t), constraints x velocities."""
         return self.at(q).jacobian
 
     def constraint_rates(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
-        """J v - b, which is 0 where v is allowed."""
+        """Residuals ``J v - b`` of the constraints of velocity: zero for admissible v.
+
+        Args:
+            q: the coordinates.
+            v: the velocities.
+        """
         return self.at(q, v).constraint_rates
 
     def constraint_bias(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
-        """γ of J v̇ = γ."""
+        """Right-hand side γ of the constraints of acceleration, ``J v̇ = γ``.
+
+        Args:
+            q: the coordinates.
+            v: the velocities.
+        """
         return self.at(q, v).constraint_bias
 
     def chords(self, q: Sequence[float], v: Sequence[float]) -> Chords:
-        """The constraints at a state."""
+        """The constraints at a state, with the motion of all joint ends.
+
+        Args:
+            q: the coordinates.
+            v: the velocities.
+        """
         return self.at(q, v).chords
 
     def energy(self, q: Sequence[float], v: Sequence[float]) -> tuple[float, ...]:
-        """Kinetic and potential energy (J), that of springs included; then what networks store, if any."""
+        """Kinetic and potential energy (J), springs included; then the networks' energy, if there are any.
+
+        Args:
+            q: the coordinates.
+            v: the velocities.
+        """
         return self.at(q, v).energy
 
     def applied(self, q: Sequence[float], v: Sequence[float], *, driven: bool) -> Applied:
-        """What elements and loads do that depend on inputs (`driven`), or those that do not."""
+        """Forces of elements and loads that depend on inputs, or of those that do not.
+
+        Args:
+            q: the coordinates.
+            v: the velocities.
+            driven: True for laws that name inputs, False for the others.
+        """
         return self.at(q, v).applied(driven=driven)
 
 
@@ -140,16 +202,16 @@ def over_floats(
     t: float = 0.0,
     u: Sequence[float] | None = None,
 ) -> Numeric:
-    """A derivation over floats, at a time and for inputs.
+    """The equations of a formulated system over floats, at a time and for inputs.
 
     Args:
         formulated: the system and its trees.
-        parameters: values in place of the system's own.
+        parameters: values instead of the system's own.
         t: the time (s).
-        u: the inputs; all zero if left out.
+        u: the inputs; all zero if omitted.
 
     Raises:
-        ModelError: a parameter has no value, or there are more or fewer inputs.
+        ModelError: a parameter has no value, or the number of inputs is wrong.
     """
     chosen = parameters or {}
     count = len(formulated.structure.inputs)
