@@ -1,4 +1,5 @@
-"""The functions that linegraph promises to emit.
+"""The functions that linegraph emits, as programs over an expression DAG.
 
-The register (`register`), what all functions share (`workspace`), and one file for each family of functions.
+`register` lists all of them, `workspace` holds the equations that they share, and each family of
+functions has a file of its own.
 """

@@ -1,11 +1,13 @@
-"""Emitted derivatives of the dynamics, by differentiating the program itself.
+"""Emitted derivatives of the dynamics, by differentiating the expressions of the program itself.
 
-With r(q, v, a, u) = M a + h - Q, which is zero where a is the acceleration,
+With r(q, v, a, u) = M a + h - Q, which is zero if a is the acceleration,
 
     ∂τ/∂x = ∂r/∂x        ∂a/∂x = -M^-1 ∂r/∂x, at the a of forward dynamics
 
-so that M is factored once and nothing is differentiated through its factors. Derivatives by q are taken along
-the velocities (`tangent_space`): three columns for an orientation, none for a quaternion's length.
+so that M is factored once. Differentiating through the factors would repeat the elimination for every
+x. Derivatives with respect to q are taken along the velocities (`tangent_space`): three columns for an
+orientation, none for a quaternion's length. The second formula is also that of [Carpentier and Mansard
+2018].
 """
 
 from __future__ import annotations
@@ -35,7 +37,7 @@ ALONG = "by changes of q along the velocities, dq = N(q) d"
 
 
 def inverse_dynamics(f: Workspace) -> tuple[Program | Routine, ...]:
-    """∂τ/∂q, ∂τ/∂v and ∂τ/∂a = M."""
+    """∂τ/∂q, ∂τ/∂v and ∂τ/∂a = M, each with one row per velocity."""
     changes, velocities, _ = variables(f)
     found = of_motion(f, f.passive, [0] * len(f.v), [*changes, *velocities])
     count = len(changes)
@@ -49,7 +51,7 @@ def inverse_dynamics(f: Workspace) -> tuple[Program | Routine, ...]:
 
 
 def forward_dynamics(f: Workspace) -> tuple[Program | Routine, ...]:
-    """∂a/∂q, ∂a/∂v and ∂a/∂u.
+    """∂a/∂q, ∂a/∂v and ∂a/∂u, each with one row per velocity.
 
     Raises:
         ModelError: the model has constraints.
@@ -72,7 +74,7 @@ def forward_dynamics(f: Workspace) -> tuple[Program | Routine, ...]:
 
 
 def linearize(f: Workspace) -> tuple[Program | Routine, ...]:
-    """A and B of ẋ = f(x, u) on the tangent space."""
+    """A and B of ẋ = f(x, u) for small changes (d, dv) on the tangent space, at any state."""
     if f.tree.closed:
         return closed_derivatives.linearize(f)
     changes, velocities, inputs = variables(f)
@@ -96,10 +98,10 @@ def linearize(f: Workspace) -> tuple[Program | Routine, ...]:
 
 
 def inverse_dynamics_by_parameters(f: Workspace) -> tuple[Program | Routine, ...]:
-    """∂τ/∂p.
+    """∂τ/∂p, one row per velocity and one column per parameter.
 
     Raises:
-        ModelError: its functions take no parameters.
+        ModelError: the functions take no parameters.
     """
     names = _parameters(f)
     results = (matrix("dtau_dp", of_motion(f, f.passive, [0] * len(f.v), names), _BY_PARAMETERS),)
@@ -109,10 +111,10 @@ def inverse_dynamics_by_parameters(f: Workspace) -> tuple[Program | Routine, ...
 
 
 def forward_dynamics_by_parameters(f: Workspace) -> tuple[Program | Routine, ...]:
-    """∂a/∂p.
+    """∂a/∂p, one row per velocity and one column per parameter.
 
     Raises:
-        ModelError: the model has constraints, or its functions take no parameters.
+        ModelError: the model has constraints, or the functions take no parameters.
     """
     _require_open(f)
     names = _parameters(f)
@@ -124,7 +126,12 @@ def forward_dynamics_by_parameters(f: Workspace) -> tuple[Program | Routine, ...
 
 
 def counts(f: Workspace, chosen: Iterable[str]) -> tuple[tuple[str, int], ...]:
-    """How many changes of q there are."""
+    """The number NT of changes of q, if a function with such derivatives is made.
+
+    Args:
+        f: the shared equations.
+        chosen: keys of the functions that are made.
+    """
     if not {"linearize", "inverse_dynamics_derivatives", "forward_dynamics_derivatives"} & {
         *chosen
     }:
@@ -134,7 +141,12 @@ def counts(f: Workspace, chosen: Iterable[str]) -> tuple[tuple[str, int], ...]:
 
 
 def listings(f: Workspace, chosen: Iterable[str]) -> tuple[Listing, ...]:
-    """The entries of dx: changes d of position, then of velocities, under the names that these have."""
+    """The entries of dx: changes d of position, then of velocities, under the names of these.
+
+    Args:
+        f: the shared equations.
+        chosen: keys of the functions that are made.
+    """
     if "linearize" not in chosen:
         return ()
     moved, rates = list(range(len(tangent.changes(f.tree)))), list(range(len(f.v)))
@@ -160,7 +172,7 @@ _BY_PARAMETERS = "derivatives by the parameters, in their order"
 
 
 def _parameters(f: Workspace) -> list[Symbol]:
-    """The parameters that functions are given, in order."""
+    """The parameters that functions take as arguments, in order."""
     if "p" not in f.head:
         problem = "its functions take no parameters, so there are no derivatives by them"
         raise ModelError(f'model "{f.tree.system.name}"', f"{problem}; keep them symbolic")
@@ -168,14 +180,14 @@ def _parameters(f: Workspace) -> list[Symbol]:
 
 
 def _require_open(f: Workspace, instead: str = "") -> None:
-    """Refuse constraints: what solves for a and lam decides as it runs."""
+    """Refuse constraints: the solver for a and lam branches at run time, which cannot be differentiated."""
     if f.tree.closed:
         problem = "it has constraints, through whose solution accelerations are not differentiated"
         raise ModelError(f'model "{f.tree.system.name}"', problem + instead)
 
 
 def _accelerations(f: Workspace, by: Sequence[Symbol]) -> tuple[Columns, tuple[Check, ...]]:
-    """The derivatives of a by each of some symbols, and what must not be zero for that."""
+    """The derivatives of a with respect to some symbols, with checks that no pivot is zero."""
     slopes = of_motion(f, f.carried, f.driving, by)
     f.dag.label = "right-hand side Q - h"
     right = [effort - h for effort, h in zip(f.driving, f.held, strict=True)]
@@ -187,7 +199,7 @@ def _accelerations(f: Workspace, by: Sequence[Symbol]) -> tuple[Columns, tuple[C
 
 
 def _solved(f: Workspace, rights: Columns) -> tuple[Columns, list[Scalar]]:
-    """``M^-1`` times some columns, and the pivots; a column of one 1 is one of M^-1 itself."""
+    """``M^-1`` times some columns, and the pivots; for unit columns, columns of the inverse are reused."""
     f.dag.label = "M = L^T D L from the leaves to the root, then back"
     if not f.symmetric:
         return solve_many(f.mass_matrix, rights, f.tree.outward, symmetric=False)
@@ -204,6 +216,6 @@ def _solved(f: Workspace, rights: Columns) -> tuple[Columns, list[Scalar]]:
 
 
 def _place_of_one(column: Sequence[Scalar]) -> int | None:
-    """Where a column has its only entry, if that is 1."""
+    """The row of a unit column's only entry; None for other columns."""
     used = [k for k, x in enumerate(column) if x != 0]
     return used[0] if len(used) == 1 and column[used[0]] == 1 else None

@@ -1,4 +1,4 @@
-"""What divides by the mass matrix, and is left out where that is singular."""
+"""Functions that divide by the mass matrix, and are left out if that is singular."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from linegraph.programs.workspace import Workspace
 
     Made = tuple[Program | Routine, ...]
-    """The functions that a key of the register makes."""
+    """The functions made for a key of the register."""
 
 DIVIDING = (
     "forward_dynamics",
@@ -24,21 +24,30 @@ DIVIDING = (
     "operational_space",
     "operational_position",
 )
-"""The keys of what divides by M by itself; what calls one of these divides, too."""
+"""Keys of functions that themselves divide by M; functions that call them do so too."""
 
 WITH_LOOPS = ("project",)
-"""The same with loops: the steps of `project` take the least kinetic energy."""
+"""Further such keys if there are loops: the steps of `project` minimise kinetic energy."""
 
 
 def barred(functions: Workspace) -> set[str]:
-    """The keys of what cannot be made as M is singular; none where it is regular."""
+    """The keys of functions that cannot be made because M is singular; none if it is regular."""
     if not functions.derivation.idle:
         return set()
     return {*DIVIDING, *(WITH_LOOPS if functions.tree.closed else ())}
 
 
 def without(made: Mapping[str, Made], names: set[str]) -> tuple[dict[str, Made], list[str]]:
-    """What is made less all that calls some functions, and what went; keys of which all went are gone."""
+    """Remove all functions that call some others.
+
+    Args:
+        made: the functions by key.
+        names: the functions that may not be called.
+
+    Returns:
+        The remaining functions by key, without keys that have lost all of theirs; and the removed
+            names.
+    """
     left: dict[str, Made] = {}
     lost: list[str] = []
     for key, found in made.items():
@@ -50,14 +59,19 @@ def without(made: Mapping[str, Made], names: set[str]) -> tuple[dict[str, Made],
 
 
 def called(program: Program | Routine) -> tuple[str, ...]:
-    """The functions that a function calls."""
+    """The names of the functions that a function calls."""
     if isinstance(program, Routine):
         return program.uses
     return tuple(call.program for call in program.calls)
 
 
 def remarks(functions: Workspace, omitted: Sequence[str]) -> tuple[str, ...]:
-    """What the head of a file says of functions that are left out."""
+    """Remark in the head of a file about functions that are left out.
+
+    Args:
+        functions: the shared equations.
+        omitted: names of the functions that are left out.
+    """
     if not omitted:
         return ()
     verb = "is" if len(omitted) == 1 else "are"

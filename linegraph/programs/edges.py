@@ -1,4 +1,4 @@
-"""Emitted functions of the inverse scheme: every variable of every edge."""
+"""Emitted functions of the inverse scheme: every variable of every edge of the system graph."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 def across(f: Workspace) -> tuple[Program | Routine, ...]:
-    """Velocity and angular velocity across every joint, body, element and constraint."""
+    """Velocity and angular velocity across every joint, body, element and constraint, in ground axes."""
     entries = tuple(
         x
         for linear, angular in f.edges.across().values()
@@ -60,7 +60,7 @@ _THROUGH = (
 
 
 def reactions(f: Workspace) -> tuple[Program | Routine, ...]:
-    """What every joint and constraint exerts: from given accelerations, and from inputs."""
+    """The wrench of every joint and constraint on its head: for given accelerations, and for given inputs."""
     names = _joints(f)
     entries: list[Scalar] = []
     for name in names:
@@ -93,7 +93,7 @@ def reactions(f: Workspace) -> tuple[Program | Routine, ...]:
 
 
 def drives(f: Workspace) -> tuple[Program | Routine, ...]:
-    """The driving forces of joints in prescribed motion."""
+    """The driving forces and torques of joints with prescribed motion."""
     found = f.edges.drives()
     if not found:
         return ()
@@ -103,7 +103,7 @@ def drives(f: Workspace) -> tuple[Program | Routine, ...]:
 
 
 def power(f: Workspace) -> tuple[Program | Routine, ...]:
-    """Through times across of every edge, and its sums."""
+    """Through times across of every edge (W), and its sums over each subspace, which are zero."""
     found, sums = powers(f.edges.edges())
     more, domains = network_powers(f.tree.network, f.edges.network())
     found |= more
@@ -121,7 +121,7 @@ def power(f: Workspace) -> tuple[Program | Routine, ...]:
 
 
 def outputs(f: Workspace) -> tuple[Program | Routine, ...]:
-    """What the model asks for by name."""
+    """The named outputs of the model."""
     if not f.tree.system.outputs:
         return ()
     entries, dynamic = f.outputs
@@ -134,7 +134,12 @@ def outputs(f: Workspace) -> tuple[Program | Routine, ...]:
 
 
 def listings(f: Workspace, chosen: Sequence[str]) -> tuple[Listing, ...]:
-    """The names of everything these functions return."""
+    """The names of all results of these functions.
+
+    Args:
+        f: the shared equations.
+        chosen: keys of the functions that are made.
+    """
     return tuple(x for key, of in _LISTINGS.items() if key in chosen for x in of(f))
 
 
@@ -191,16 +196,16 @@ _LISTINGS = {
     "power": _of_power,
     "outputs": _of_outputs,
 }
-"""By function, the names of what it returns."""
+"""For each function, the names of its results."""
 
 
 def _joints(f: Workspace) -> list[str]:
-    """Joints and constraints that have reactions."""
+    """Joints and constraints, all of which have reactions."""
     return list(f.tree.ends)
 
 
 def _after_dynamics(f: Workspace, name: str, about: str, results: tuple[Result, ...]) -> Program:
-    """A function that first solves for v̇ and λ."""
+    """A function that first calls forward dynamics for v̇ and λ."""
     solved = [Argument("a", len(f.v), f.texts["a"])]
     if f.tree.closed:
         solved.append(Argument("lam", len(f.constraint_equations), f.texts["lam"]))

@@ -1,4 +1,4 @@
-"""What a family of functions adds to a file besides its functions: lists of names, counts, remarks."""
+"""Additions of a family of functions to a file besides the functions: lists of names, counts, remarks."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ def _nothing(f: Workspace, chosen: Sequence[str]) -> tuple[Any, ...]:
 
 
 class Family(NamedTuple):
-    """What is asked of a family once its functions are made.
+    """Additions of a family of functions to a file, made after its functions.
 
-    Each is called with what the functions share and with the keys of `register.PROGRAMS` that were made.
+    Each is called with the shared equations and the keys of `register.PROGRAMS` that were made.
 
     Attributes:
         listings: arrays of names that the file declares.
-        counts: named sizes, each a pair of a name and a number.
+        counts: named sizes, each a pair of name and number.
         remarks: paragraphs for the head of the file.
     """
 

@@ -1,4 +1,4 @@
-"""Frames that are asked for by name, and what they are called in the names of emitted functions."""
+"""Requested frames, and their identifiers in the names of emitted functions."""
 
 from __future__ import annotations
 
@@ -13,11 +13,15 @@ if TYPE_CHECKING:
 
 
 def named_frames(system: System, frames: Iterable[str]) -> tuple[NamedFrame, ...]:
-    """Bodies and ``body.frame`` with their identifiers.
+    """Bodies and ``body.frame`` with their identifiers, each once.
+
+    Args:
+        system: has the bodies and frames.
+        frames: names as in the model; a single name is allowed.
 
     Raises:
         ModelError: there is no such frame.
-        NameRefused: two are called alike.
+        NameRefused: two frames get the same identifier.
     """
     from codegen import naming
 

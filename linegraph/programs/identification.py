@@ -1,4 +1,7 @@
-"""Emitted functions for identification: the regressor, and the model's own standard parameters."""
+"""Emitted functions for identification: the regressor, and the model's own standard parameters.
+
+τ = Y(q, v, a) π with π the standard parameters of all links and joints [Atkeson et al. 1986].
+"""
 
 from __future__ import annotations
 
@@ -45,7 +48,7 @@ COUNT = "NPI"
 
 
 def regressor_program(f: Workspace) -> tuple[Program | Routine, ...]:
-    """Y of ``tau = Y pi``, and the rest of tau where there is one."""
+    """The regressor Y of ``τ = Y π``, and the rest of τ that no parameter of π causes, if there is any."""
     if not f.tree.links:
         return ()
     split = _Split(f)
@@ -66,7 +69,7 @@ def regressor_program(f: Workspace) -> tuple[Program | Routine, ...]:
 
 
 def values_program(f: Workspace) -> tuple[Program | Routine, ...]:
-    """The model's own pi."""
+    """The standard parameters π of the model itself."""
     if not f.tree.links:
         return ()
     values = tuple(_Split(f).values())
@@ -80,7 +83,12 @@ def values_program(f: Workspace) -> tuple[Program | Routine, ...]:
 
 
 def listings(f: Workspace, chosen: Sequence[str]) -> tuple[Listing, ...]:
-    """The names of pi."""
+    """The names and units of the entries of π.
+
+    Args:
+        f: the shared equations.
+        chosen: keys of the functions that are made.
+    """
     if not f.tree.links or not {REGRESSOR, VALUES} & {*chosen}:
         return ()
     named = quantities(f.tree)
@@ -89,7 +97,7 @@ def listings(f: Workspace, chosen: Sequence[str]) -> tuple[Listing, ...]:
 
 
 class _Split:
-    """Inverse dynamics as a part that is linear in pi, and a rest."""
+    """Inverse dynamics split into a part linear in π, and the rest."""
 
     def __init__(self, f: Workspace) -> None:
         self._f = f
@@ -97,7 +105,7 @@ class _Split:
         self._a = f.symbols("a")
 
     def rows(self) -> list[list[Scalar]]:
-        """Y, a row for each velocity."""
+        """Y, one row per velocity."""
         f = self._f
         count = 10 * len(f.tree.links)
         rows: list[list[Scalar]] = [[0] * (count + 3 * len(self._axes)) for _ in range(len(f.v))]
@@ -115,7 +123,7 @@ class _Split:
         return rows
 
     def _columns(self) -> list[Columns]:
-        """By the route, in the frames (of the walk or the shortest) and with the sums that cost least."""
+        """Y by the cheapest of all combinations of route, working frames and shared sums."""
         f = self._f
         own = [home.pose for home in homes(f.tree)]
         walk = [Station(i, pose) for i, pose in enumerate(own)]
@@ -137,7 +145,7 @@ class _Split:
 
     @cached_property
     def _bearings(self) -> Bearings:
-        """Friction of joints; springs, loads and the like beside it."""
+        """Friction of joints, apart from springs, loads and other elements."""
         f = self._f
         system = f.tree.system
         passive = [e for e in system.force_elements if not depends_on_inputs(system, e.values())]
@@ -145,7 +153,7 @@ class _Split:
 
     @cached_property
     def _stored(self) -> tuple[dict[str, Scalar], list[tuple[int, int, Scalar]]]:
-        """What networks add to the mass matrix: rotor inertias of joints by name, all other entries."""
+        """Entries of networks in the mass matrix: rotor inertias of joints by name, then all others."""
         f = self._f
         known = {axis.joint: axis for axis in self._axes}
         armature: dict[str, Scalar] = dict.fromkeys(known, 0)
@@ -171,7 +179,7 @@ class _Split:
         return armature, rest
 
     def values(self) -> list[Scalar]:
-        """Pi of the model's own numbers."""
+        """The values of π."""
         f = self._f
         values = link_values(f.tree)
         for axis in self._axes:
@@ -182,7 +190,7 @@ class _Split:
     # -- what is no parameter
 
     def rest(self) -> list[Scalar]:
-        """Of tau what springs, loads, networks and the like make."""
+        """The part of τ from springs, loads, networks and other elements."""
         f = self._f
         total: list[Scalar] = [0] * len(f.v)
         others = [*self._bearings.others]

@@ -1,6 +1,7 @@
 """Derivatives of the unknowns of a network's algebraic loop, by the implicit function theorem.
 
-What Newton's method solves is r(z, x) = 0, so that ``∂z/∂x = -K^-1 ∂r/∂x`` with K = ∂r/∂z.
+The unknowns z solve r(z, x) = 0, so ``∂z/∂x = -K^-1 ∂r/∂x`` with K = ∂r/∂z. Newton's iteration itself
+is not differentiated.
 """
 
 from __future__ import annotations
@@ -18,14 +19,15 @@ if TYPE_CHECKING:
     from linegraph.programs.workspace import Workspace
 
 MOST = 3
-"""The most unknowns whose K is inverted in straight lines, by minors: which pivots are zero is not known."""
+"""The most unknowns for which K is inverted in straight-line code. Minors are used, since elimination
+would need pivots that are known to be non-zero."""
 
 
 def loop_slopes(f: Workspace, chain: Mapping[Symbol, Gradient]) -> dict[Symbol, Gradient]:
-    """The derivatives of each unknown by what it depends on.
+    """The derivatives of each unknown with respect to all symbols that it depends on.
 
     Args:
-        f: the functions of the model.
+        f: the shared equations.
         chain: the derivatives of symbols that are not independent.
 
     Raises:
@@ -53,7 +55,7 @@ def loop_slopes(f: Workspace, chain: Mapping[Symbol, Gradient]) -> dict[Symbol, 
 
 
 def _inverse(rows: Sequence[Sequence[Scalar]]) -> list[list[Scalar]]:
-    """By minors: defined wherever the matrix is regular."""
+    """The inverse by minors: defined wherever the matrix is regular."""
     size = len(rows)
     whole = _determinant(rows)
 

@@ -87,23 +87,23 @@ OF_FRAMES = {
 }
 OF_WHOLE = dict(zip(WHOLE, ("com", "com_velocity", "Jcom", "hg", "Ag", "Agdot_v"), strict=True))
 FIRST = ("position", "rotation", "jacobian", "com", "Ag", "Jcom")
-"""What the other results may be made of."""
+"""Results that others may be computed from; they are chosen first."""
 
 SWEEPS = 4
-"""Results whose ways are chosen beside each other are gone through more than once."""
+"""Rounds of choosing a formula for each result: every choice changes the cost of the others."""
 
 RENAMED = {"jacobian": "J", "jacobian_dot_v": "Jdot_v"}
-"""What a frame's results are called where they stand alone."""
+"""Names of a frame's results in functions of one frame."""
 
 
 class Kinematics:
-    """The kinematics of some frames, and of the system as a whole where that is asked for.
+    """The kinematics of some frames, and of the system as a whole if masses are included.
 
     Args:
-        f: what the model's functions share.
+        f: the shared equations.
         frames: the frames.
         whole: whether masses matter.
-        turning: whether the frames' axes do.
+        turning: whether the frames' axes matter.
     """
 
     def __init__(
@@ -114,7 +114,7 @@ class Kinematics:
         whole: bool = False,
         turning: bool = True,
     ) -> None:
-        """Build the tree; the rest waits."""
+        """Build the tree that ends in the frames; results are derived when they are needed."""
         self._f = f
         seats = [seat_of(f.tree, frame.name) for frame in frames]
         self._tipped: Tipped = tipped(f.tree, seats, masses=whole, turning=turning)
@@ -127,13 +127,23 @@ class Kinematics:
         return Outlook(TreeState(tree, self._f.q, self._f.v))
 
     def has(self, result: str, frame: str) -> bool:
-        """Whether a result can be had, of a frame or of the whole."""
+        """Whether a result is available here.
+
+        Args:
+            result: a key of `RESULTS`.
+            frame: identifier of a frame; "" for the system as a whole.
+        """
         if not frame:
             return self._whole
         return frame in self._tips and (self._turning or result != "rotation")
 
     def ways(self, result: str, frame: str = "") -> list[tuple[Scalar, ...]]:
-        """All ways to compute a result of `RESULTS`, of a frame or of the whole."""
+        """All formulas for a result, flat: they have the same values and different costs.
+
+        Args:
+            result: a key of `RESULTS`.
+            frame: identifier of a frame; "" for the system as a whole.
+        """
         if frame:
             return self._of_frame(result, self._tips[frame])
         return self._of_whole[result]()
@@ -171,7 +181,7 @@ class Kinematics:
 
     @cached_property
     def _centers(self) -> list[Vector]:
-        """Ways to the centre of mass: of shares of the mass, or divided by it at the end."""
+        """Formulas for the centre of mass: with shares of the mass, or divided by it at the end."""
         mass, at_rest = self._tipped.mass, self._tipped.at_rest
         set_label(self._f.dag, "centre of mass")
         resting, per_mass = scale(1 / mass, at_rest), 1 / mass
@@ -179,7 +189,7 @@ class Kinematics:
 
     @cached_property
     def _center_columns(self) -> list[list[Column]]:
-        """Ways to what each velocity does to it: the same, or from the momentum matrix."""
+        """Formulas for its Jacobian: in the same two ways, or from the momentum matrix."""
         mass = self._tipped.mass
         return [
             center_columns(self._shares),
@@ -192,13 +202,18 @@ class Kinematics:
 
 
 def besides(asked: Sequence[str], frames: Sequence[NamedFrame]) -> tuple[str, ...]:
-    """What is emitted where functions and frames are asked for: those of the frames, and all at once."""
+    """Keys that a request for frames or for several functions of the whole adds.
+
+    Args:
+        asked: keys of the requested functions.
+        frames: the requested frames.
+    """
     several = sum(key in WHOLE for key in asked) > 1
     return (*(["frames"] if frames else []), *(["kinematics"] if frames or several else []))
 
 
 def frames(f: Workspace) -> tuple[Program | Routine, ...]:
-    """Pose, velocity, Jacobian and its rate of every frame that is asked for."""
+    """Pose, velocity, Jacobian and acceleration at v̇ = 0 of every requested frame."""
     found = []
     for frame in f.frames:
         own = both(f, (frame,))
@@ -216,7 +231,7 @@ def frames(f: Workspace) -> tuple[Program | Routine, ...]:
 
 
 def whole(function: str) -> Callable[[Workspace], tuple[Program | Routine, ...]]:
-    """What makes one of the functions of `WHOLE`."""
+    """The maker of one of the functions of `WHOLE`."""
 
     def make(f: Workspace) -> tuple[Program | Routine, ...]:
         require_mass(f)
@@ -230,7 +245,7 @@ def whole(function: str) -> Callable[[Workspace], tuple[Program | Routine, ...]]
 
 
 def kinematics(f: Workspace) -> tuple[Program | Routine, ...]:
-    """All that is asked for of kinematics, sharing work; where nothing is, all there is."""
+    """One function for all requested results of kinematics, sharing work; for all there are by default."""
     functions = [key for key in WHOLE if key in f.asked] or ([] if f.frames else list(WHOLE))
     if functions:
         require_mass(f)
@@ -257,10 +272,10 @@ def kinematics(f: Workspace) -> tuple[Program | Routine, ...]:
 
 
 def _require_apart(made: Sequence[Result], keys: Iterable[Key]) -> None:
-    """Refuse a frame whose results are called as those of the whole, as of a frame named com.
+    """Refuse a frame whose results have the names of those of the whole, such as a frame named com.
 
     Raises:
-        ModelError: two results have one name.
+        ModelError: two results have the same name.
     """
     times = Counter(result.name for result in made)
     for result, (_, frame) in zip(made, keys, strict=True):
@@ -273,10 +288,10 @@ def _require_apart(made: Sequence[Result], keys: Iterable[Key]) -> None:
 
 
 def require_mass(f: Workspace) -> None:
-    """Refuse what is about the centre of mass where there is none.
+    """Refuse functions of the centre of mass if the total mass is zero.
 
     Raises:
-        ModelError: all that moves has no mass, for the parameters' own values.
+        ModelError: all that moves has no mass, at the default parameters.
     """
     links = f.derivation.sample.links
     if not sum(link.moments.mass for link in links) > 0:
@@ -288,19 +303,30 @@ def require_mass(f: Workspace) -> None:
 
 
 def both(f: Workspace, frames: Sequence[NamedFrame], *, whole: bool = False) -> list[Kinematics]:
-    """Kinematics with the frames' axes, and without them."""
+    """Kinematics with the frames' axes, and without them.
+
+    Args:
+        f: the shared equations.
+        frames: the frames.
+        whole: whether masses matter.
+    """
     return [Kinematics(f, frames, whole=whole), Kinematics(f, frames, turning=False)]
 
 
 Key = tuple[str, str]
-"""A result and the frame it is of."""
+"""A result, and the identifier of its frame."""
 
 
 def shortest(sources: Sequence[Kinematics], keys: Sequence[Key]) -> dict[Key, tuple[Scalar, ...]]:
-    """Every result in one of its ways, so that all together take few operations.
+    """One formula for every result, so that all together take few operations.
 
-    First each in the way that adds the fewest to those before it, what others may be made of before them;
-    then each once more beside all others, until none gains.
+    First each result gets the formula that adds the fewest operations to those before it, starting with
+    results that others may be computed from; then each is chosen again with all others given, until
+    nothing changes. Trying all combinations would take too long.
+
+    Args:
+        sources: where formulas come from.
+        keys: the results.
     """
     ways = {
         key: [
@@ -338,5 +364,5 @@ def _result(f: Workspace, name: str, kind: str, frame: str, entries: tuple[Scala
 
 
 def _prescribed(f: Workspace) -> str:
-    """What to say where the velocity is not J v alone."""
+    """Addition to a description if the velocity is not J v alone."""
     return PRESCRIBED if any(link.place.drive for link in f.tree.links) else ""

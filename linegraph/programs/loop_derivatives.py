@@ -1,17 +1,17 @@
-"""Emitted linearisation of a mechanism in its independent coordinates.
+"""Emitted linearisation of a mechanism with closed loops, in its independent coordinates.
 
-A motion that keeps the constraints is known by its independent velocities w and by as many changes s of
-position as the equations of position leave free: those along w, and with constraints of velocity alone
-(wheels, blades) some more. So are its small changes,
+A motion that satisfies the constraints is given by its independent velocities w and by as many changes
+s of position as the holonomic constraints leave free: those along w, and more if there are constraints
+of velocity alone (wheels, blades). So are its small changes,
 
     d = D ds        dv = T dw + S ds        J S = -∂(J v - b)/∂q D
 
-where D keeps the equations of position and T and S those of velocity. With these put into the derivative of
-M a - f - J^T lam = 0, J a = gam,
+where D satisfies the constraints of position, and T and S those of velocity. Put into the derivative of
+M a - f - Jᵀ lam = 0, J a = gam, they give
 
-    M da - J^T dlam = -∂(M a - f - J^T lam)        J da = -∂(J a - gam)
+    M da - Jᵀ dlam = -∂(M a - f - Jᵀ lam)        J da = -∂(J a - gam)
 
-which is solved as the equations of motion are. ds' are entries of d' = dv - (ad v) d, dw' those of da.
+which is solved like the equations of motion. ds' are entries of d' = dv - (ad v) d, dw' those of da.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ if TYPE_CHECKING:
     from linegraph.programs.workspace import Workspace
 
 WELL_APART = 1e-4
-"""The least singular value of columns of J, in pure numbers, that determine something."""
+"""Least singular value, in pure numbers, of columns of J that determine other changes."""
 
 
 def linearize(f: Workspace) -> tuple[Program | Routine, ...]:
-    """A and B in the independent coordinates.
+    """A and B in the independent coordinates and velocities.
 
     Raises:
-        ModelError: the mechanism has none, or constraints follow inputs.
+        ModelError: there are no independent coordinates, or constraints follow inputs.
     """
     who = f'model "{f.tree.system.name}"'
     free = free_changes(f)
@@ -73,7 +73,7 @@ def linearize(f: Workspace) -> tuple[Program | Routine, ...]:
 
 
 def free_changes(f: Workspace) -> list[int]:
-    """The changes of position that the others follow from: those along w, then others as they are needed."""
+    """The changes of position that determine all others: those along w, then more as needed."""
     if f.tree.network is not None or not independent(f):
         return []
     import numpy
@@ -95,7 +95,7 @@ def free_changes(f: Workspace) -> list[int]:
 
 
 def _slopes(f: Workspace) -> Program:
-    """What is left of the equations at given a and lam, differentiated by changes of q, by v and by u."""
+    """Derivatives of the residuals of the equations, at given a and lam, by changes of q, by v and by u."""
     jacobian, a, lam = f.jacobian, f.symbols("a"), f.symbols("lam")
     less = list(f.driving)
     for row, multiplier in zip(jacobian, lam, strict=True):

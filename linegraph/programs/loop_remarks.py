@@ -1,4 +1,4 @@
-"""What the head of an emitted file says of a system with constraints."""
+"""Remarks in the head of an emitted file about constraints."""
 
 from __future__ import annotations
 
@@ -13,7 +13,12 @@ if TYPE_CHECKING:
 
 
 def remarks(f: Workspace, chosen: Sequence[str]) -> tuple[str, ...]:
-    """What the head of a file says of a closed system."""
+    """Number, rank and redundancy of the constraints, as a remark in the head of a file.
+
+    Args:
+        f: the shared equations.
+        chosen: keys of the functions that are made; not used.
+    """
     if not f.tree.closed:
         return ()
     found = assembly(f)
@@ -39,5 +44,5 @@ def remarks(f: Workspace, chosen: Sequence[str]) -> tuple[str, ...]:
 
 
 def freedoms_text(count: int) -> str:
-    """How many degrees of freedom there are, in words."""
+    """The number of degrees of freedom, in words."""
     return f"{count} degree{'' if count == 1 else 's'} of freedom"

@@ -1,4 +1,4 @@
-"""Emitted functions that networks add: algebraic loops, and the whole state's derivative at once."""
+"""Emitted functions that networks add: algebraic loops, and the derivative of the whole state at once."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def algebraic_loop(f: Workspace) -> tuple[Program | Routine, ...]:
-    """The residual of the algebraic loop with its Jacobian, and Newton's method on it."""
+    """The residual of the algebraic loop with its Jacobian, and the solver by Newton's method."""
     if f.networks is None or not f.networks.network.loop:
         return ()
     network = f.networks.network
@@ -53,7 +53,7 @@ def algebraic_loop(f: Workspace) -> tuple[Program | Routine, ...]:
 
 
 def checks(f: Workspace) -> tuple[Check, ...]:
-    """That nothing by which the network's static laws are divided is zero."""
+    """Checks that no divisor in the network's static laws is zero."""
     if f.networks is None:
         return ()
     sizes = dict.fromkeys(
@@ -63,7 +63,12 @@ def checks(f: Workspace) -> tuple[Check, ...]:
 
 
 def remarks(f: Workspace, chosen: Sequence[str]) -> tuple[str, ...]:
-    """What the head of a file says of networks."""
+    """Sign conventions and properties of networks, as remarks in the head of a file.
+
+    Args:
+        f: the shared equations.
+        chosen: keys of the functions that are made; not used.
+    """
     if f.tree.network is None:
         return ()
     text = (
@@ -76,7 +81,7 @@ def remarks(f: Workspace, chosen: Sequence[str]) -> tuple[str, ...]:
 
 
 def rhs(f: Workspace) -> tuple[Program | Routine, ...]:
-    """ẋ of the whole state x = (q, v)."""
+    """Derivative ẋ of the whole state x = (q, v), for integrators."""
     n, m = len(f.q), len(f.v)
     arguments = (*f.head, "u")
     given = [Argument(a, f.sizes.get(a), f.texts[a]) for a in arguments]
@@ -95,12 +100,17 @@ def rhs(f: Workspace) -> tuple[Program | Routine, ...]:
 
 
 def listings(f: Workspace, chosen: Sequence[str]) -> tuple[Listing, ...]:
-    """The names of x, where `rhs` takes it."""
+    """The names of the entries of x, if `rhs` is made.
+
+    Args:
+        f: the shared equations.
+        chosen: keys of the functions that are made.
+    """
     return (state_listing(f.tree),) if "rhs" in chosen else ()
 
 
 def state_listing(tree: KinematicTree) -> Listing:
-    """The names of x: coordinates, then velocities, those of a coordinate's name with _dot."""
+    """The names of the entries of x: coordinates, then velocities, with _dot after a coordinate's name."""
     positions = [quantity.name for quantity in tree.positions]
     rates = tuple(
         Quantity(f"{q.name}_dot" if q.name in positions else q.name, q.unit, q.about)

@@ -1,12 +1,12 @@
-"""Emitted functions of operational space: the inertia that a frame has, and the forces that belong to it.
+"""Emitted functions of operational space: the inertia of a frame, and the forces on it [Khatib 1987].
 
 With J the Jacobian of a frame and M v̇ + h = Q, a force F on the frame, Q = Jᵀ F, moves it by
 
     Λ a + μ = F        Λ = (J M⁻¹ Jᵀ)⁻¹        μ = Λ (J M⁻¹ h - J̇ v)        J̄ = M⁻¹ Jᵀ Λ
 
-With M = Lᵀ D L and y = L⁻ᵀ r of each right-hand side, J M⁻¹ Jᵀ and J M⁻¹ h are products of the y, so that
-only the columns of J̄ are substituted back. With constraints all of this is said in independent velocities w,
-v = T w: J T stands for J, TᵀMT for M, and J̄ comes back to v by T.
+With M = Lᵀ D L and y = L⁻ᵀ r for each right-hand side r, J M⁻¹ Jᵀ and J M⁻¹ h are products of the y, so
+that only the columns of J̄ are substituted back. With constraints, everything is written in independent
+velocities w, v = T w: J T replaces J, TᵀMT replaces M, and J̄ returns to v by T.
 """
 
 from __future__ import annotations
@@ -36,23 +36,28 @@ if TYPE_CHECKING:
 
 BAR = "inverse of J, weighted by inertia"
 ROWS = {"operational_space": 6, "operational_position": 3}
-"""How many rows of the Jacobian count."""
+"""Number of rows of the Jacobian that are used: all, or the linear ones."""
 
 DIRECTIONS = ("along x", "along y", "along z", "about x", "about y", "about z")
 
 
 def operational_space(f: Workspace) -> tuple[Program | Routine, ...]:
-    """Λ, μ and J̄ of all six rows of the Jacobian of each frame that can move in all directions."""
+    """Λ, μ and J̄ for all six rows of the Jacobian of each frame that can move in all directions."""
     return _of_frames(f, "operational_space")
 
 
 def operational_position(f: Workspace) -> tuple[Program | Routine, ...]:
-    """The same of the three linear rows: what an arm of few joints can move."""
+    """Λ, μ and J̄ for the three linear rows: enough for arms with fewer than six joints."""
     return _of_frames(f, "operational_position")
 
 
 def remarks(f: Workspace, chosen: Iterable[str]) -> tuple[str, ...]:
-    """What the head of a file says of frames that have not all functions that are asked for."""
+    """Remarks in the head of a file about frames that lack requested functions.
+
+    Args:
+        f: the shared equations.
+        chosen: keys of the functions that are made.
+    """
     chosen = set(chosen)
     return tuple(
         f'There is no {function} of the frame "{frame.name}": it {problem}.'
@@ -64,10 +69,10 @@ def remarks(f: Workspace, chosen: Iterable[str]) -> tuple[str, ...]:
 
 
 def _of_frames(f: Workspace, function: str) -> tuple[Program, ...]:
-    """One for each frame that can move so; the head of the file tells of the others.
+    """One function for each frame that can move in all directions; remarks name the other frames.
 
     Raises:
-        ModelError: none can, or the model has no such function.
+        ModelError: no frame can, or the model has no such function.
     """
     if not f.frames:
         return ()
@@ -82,14 +87,14 @@ def _of_frames(f: Workspace, function: str) -> tuple[Program, ...]:
 
 
 class _Dynamics(NamedTuple):
-    """What a frame's inertia is made of: M v̇ + h = Q in coordinates without constraints.
+    """M v̇ + h = Q in coordinates without constraints.
 
     Attributes:
         places: those of the velocities in v.
         mass, bias: M and h.
         outward: the velocities from the root to the leaves.
-        calls: what computes M and h, and all velocities for those of these coordinates.
-        spread: T of v = T w where these w are not all of v, and what T w leaves of v̇.
+        calls: functions that compute M and h, and v from these velocities.
+        spread: T of v = T w and the part of v̇ at ẇ = 0, if the velocities w are not all of v.
     """
 
     places: Sequence[int]
@@ -111,7 +116,7 @@ def _operational(f: Workspace, frame: NamedFrame, function: str, dynamics: _Dyna
     f.dag.label = "J M^-1 J^T and its inverse"
     products = [[_dot(a, b) for b in scaled] for a in reduced[:rows]]
     inner = [row[:rows] for row in products]
-    # the rows of translation first: what is eliminated last depends on all others
+    # eliminated row by row, translation first: a zero pivot is the first direction that depends on others
     last_first = range(rows)[::-1]
     known = factored(inner, last_first)
     lam = known.inverse()
@@ -141,7 +146,7 @@ def _operational(f: Workspace, frame: NamedFrame, function: str, dynamics: _Dyna
 
 
 def _about(frame: NamedFrame, rows: int, *, closed: bool) -> str:
-    """What a function says of itself."""
+    """The description of an emitted function."""
     what = "the frame" if rows == 6 else "the origin of the frame"
     text = (
         f'Operational space of {what} "{frame.name}": Lambda = (J M^-1 J^T)^-1, '
@@ -157,7 +162,7 @@ def _about(frame: NamedFrame, rows: int, *, closed: bool) -> str:
 def _motion(
     f: Workspace, frame: NamedFrame, rows: int, dynamics: _Dynamics
 ) -> tuple[list[list[Scalar]], list[Scalar]]:
-    """J in the coordinates of `dynamics`, and the rate of the frame's velocity where these are constant."""
+    """J in the coordinates of `dynamics`, and the rate of the frame's velocity at constant w."""
     size = len(f.v)
     keys = [(result, frame.identifier) for result in ("jacobian", "jacobian_dot_v")]
     flat, rate = shortest(both(f, (frame,)), keys).values()
@@ -169,7 +174,7 @@ def _motion(
 
 
 def _open(f: Workspace, function: str) -> _Dynamics:
-    """Of a tree: `equations`.
+    """M and h of a tree, from `equations`.
 
     Raises:
         ModelError: the mass matrix is not symmetric.
@@ -189,10 +194,10 @@ def _open(f: Workspace, function: str) -> _Dynamics:
 
 
 def _closed(f: Workspace, function: str) -> _Dynamics:
-    """With constraints: `reduction` and `reduced_equations`.
+    """M and h with constraints, from `reduction` and `reduced_equations`.
 
     Raises:
-        ModelError: there are none, or too few independent velocities.
+        ModelError: the equations are not reduced, or there are too few independent velocities.
     """
     made = {program.name: program for program in loop_routines.reduction(f)}
     if not made:
@@ -239,9 +244,9 @@ def _checks_of_frame(
 
 
 def _immobile(f: Workspace, frame: NamedFrame, rows: int) -> str:
-    """What to tell of a frame that nowhere can move in all directions, judged at random states; or nothing.
+    """Why a frame cannot move in all directions at any state, judged at random states; "" if it can.
 
-    Named is the first direction that depends on those before it.
+    The message names the first direction that depends on those before it.
     """
     tree = f.derivation.sample
     way = tipped(tree, [seat_of(tree, frame.name)], masses=False)
@@ -260,7 +265,7 @@ def _immobile(f: Workspace, frame: NamedFrame, rows: int) -> str:
 
 
 def _dependent(rows: Sequence[Sequence[float]]) -> int | None:
-    """The first row that depends on those before it; None if there is none."""
+    """The first row that depends on those before it, by Gram-Schmidt with reorthogonalisation; else None."""
     kept: list[list[float]] = []
     for i, row in enumerate(rows):
         rest = [float(x) for x in row]
@@ -287,7 +292,7 @@ def _product(a: Sequence[Sequence[Scalar]], b: Sequence[Sequence[Scalar]]) -> li
 
 
 def _matrix(f: Workspace, name: str, rows: int, columns: int) -> list[list[Scalar]]:
-    """A local array of a program as rows."""
+    """A local array of a program, as rows."""
     return [[f.dag.symbol(name, i * columns + j) for j in range(columns)] for i in range(rows)]
 
 

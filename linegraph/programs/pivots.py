@@ -1,4 +1,4 @@
-"""What tells that a mass matrix cannot be inverted: checks on the pivots of its factors."""
+"""Checks that the mass matrix can be inverted, on the pivots of its factors."""
 
 from __future__ import annotations
 
@@ -18,7 +18,14 @@ if TYPE_CHECKING:
 
 
 def bound(pivot: Scalar, entry: Scalar) -> Scalar:
-    """What a pivot is compared with: what it was made of, or zero if it was not made of anything."""
+    """Scale by which a pivot is judged: the diagonal entry that it was reduced from, else zero.
+
+    A pivot that is the entry itself involves no subtraction, so it has no rounding to compare with.
+
+    Args:
+        pivot: of the factorisation.
+        entry: the diagonal entry of M.
+    """
     return 0 if pivot is entry else entry
 
 
@@ -30,14 +37,18 @@ def checks(
 ) -> tuple[Check, ...]:
     """One check for each velocity whose pivot is not a number.
 
-    `places` are those of the velocities in v where M is not of all of them.
+    Args:
+        f: the shared equations.
+        pivots: of the factorisation.
+        bounds: the scale of each pivot.
+        places: of the velocities in v, if M is not of all of them.
     """
     first = f.tree.layout.mechanical
     places = places or range(len(f.tree.velocities))
     found = []
     asked: set[tuple[int, Operand]] = set()
     for i, (pivot, least) in enumerate(zip(pivots, bounds, strict=True)):
-        # what a network stores may be negative, behind an op-amp say; inertia may not
+        # a store of a network may be negative, e.g. behind an op-amp; an inertia may not
         size = pivot if i < first else f.dag.function("abs", pivot)
         limit = least if i < first else 0
         if isinstance(size, Node) and (size.index, limit) not in asked:

@@ -1,4 +1,4 @@
-"""Stage 5: the derivation run over the expression DAG, cut into the functions we promise."""
+"""The register of emitted functions: the derivation over the expression DAG, cut into functions."""
 
 from __future__ import annotations
 
@@ -46,17 +46,17 @@ def module_of(
     request: Request = EVERYTHING,
     about: Iterable[str] = (),
 ) -> Module:
-    """All functions of a model.
+    """All requested functions of a model, with names, counts and remarks for their file.
 
     Args:
-        derivation: the model with its graph and its tree.
+        derivation: the model with its graph and trees.
         name: prefix of everything emitted; an identifier.
-        request: which functions, and how.
+        request: which functions, and in which form.
         about: paragraphs for the head of the file.
 
     Raises:
-        ModelError: a parameter has no value, a closed model cannot be assembled, or it has no function of
-            those asked for.
+        ModelError: a parameter has no value, a closed model cannot be assembled, or a requested
+            function does not exist for the model.
     """
     parameters = parameters_of(derivation)
     asked = _asked(request)
@@ -93,10 +93,10 @@ def module_of(
 
 
 def _require_made(derivation: Derived, keys: Iterable[str], made: Mapping[str, Made]) -> None:
-    """Refuse what is asked for by name and is not made.
+    """Refuse functions that are requested by name but cannot be made.
 
     Raises:
-        ModelError: some of it divides by M, which is singular; or the model has no such function.
+        ModelError: some divide by M, which is singular; or the model has nothing of the kind.
     """
     keys = list(keys)
     divided = [key for key in keys if key not in made]
@@ -110,7 +110,7 @@ def _require_made(derivation: Derived, keys: Iterable[str], made: Mapping[str, M
 
 
 def _asked(request: Request) -> tuple[str, ...]:
-    """The keys of `PROGRAMS` that are asked for."""
+    """The keys of `PROGRAMS` that are requested."""
     wanted, only, frames = request.wanted, request.only, request.frames
     if not only:
         asked = (*(set(PROGRAMS) - set(ON_REQUEST)), *wanted)
@@ -123,9 +123,9 @@ def _asked(request: Request) -> tuple[str, ...]:
 
 
 def _made(functions: Workspace, keys: Iterable[str]) -> tuple[dict[str, Made], tuple[str, ...]]:
-    """What each of some keys of `PROGRAMS` makes, and those that make what these call; and what is left out.
+    """The functions for some keys of `PROGRAMS` and for those that they call; then the keys left out.
 
-    A key of which nothing is left is none of those made.
+    A key that has lost all of its functions is missing from the result.
     """
     keys = list(keys)
     barred = division.barred(functions)
@@ -174,10 +174,10 @@ def _inverse_dynamics(f: Workspace) -> Program:
 
 
 def _forward_dynamics(f: Workspace) -> Program:
-    """By factored mass matrix or by articulated inertias, whichever takes fewer operations.
+    """Forward dynamics by a factored mass matrix or by articulated inertias, whichever is cheaper.
 
-    With solid bodies M cannot become singular, so articulated inertias need no scale to judge pivots by;
-    where some link is not solid for the parameters' own values, the factors do the judging.
+    If all bodies are solid, M cannot become singular, so articulated inertias need no scale to judge
+    pivots by. If some link is not solid at the default parameters, only the factors of M can judge.
     """
     solid = all(map(is_solid, f.derivation.sample.links))
     if f.armatures is None or f.tree.coupled or f.tree.levelled or not solid:
@@ -189,7 +189,7 @@ def _forward_dynamics(f: Workspace) -> Program:
 
 
 def _articulated(f: Workspace) -> Program:
-    """Links by articulated inertias, networks beside them by their own part of the mass matrix."""
+    """Links by articulated inertias, networks by their own block of the mass matrix."""
     total = [effort + load for effort, load in zip(f.driving, f.along(f.carried), strict=True)]
     solution = forward_dynamics(f.working, total, f.armatures or {})
     first, size = f.tree.layout.mechanical, len(f.v) - f.tree.layout.mechanical
@@ -209,9 +209,10 @@ def _articulated(f: Workspace) -> Program:
 
 
 def _factored(f: Workspace) -> Program:
-    """Call `equations` for M and h, then M = L^T D L in straight lines.
+    """Call `equations` for M and h, then factor M = Lᵀ D L in straight-line code.
 
-    Where h and Q cannot be added without losing digits, only M is called for.
+    Eliminating from the leaves keeps the zeros of M [Featherstone 2008, sec. 6.5]. If adding h and Q
+    would lose digits, only M is called for.
     """
     size = len(f.v)
     f.dag.label = "right-hand side Q - h"
@@ -232,7 +233,7 @@ def _factored(f: Workspace) -> Program:
 
 
 def _factored_cost(f: Workspace) -> int:
-    """Operations of `equations` and of what `_factored` adds: p(p+1) + 5p + 3 for p couplings inward."""
+    """Operations of `equations` and of `_factored`: p(p+1) + 5p + 3 for p couplings towards the root."""
     place = {k: n for n, k in enumerate(f.tree.outward)}
     inward = [
         sum(used and place[j] < place[i] for j, used in enumerate(row))
@@ -262,7 +263,12 @@ def _coordinate_rates(f: Workspace) -> Program:
 
 
 def energy_remark(system: System, network: Network | None) -> str:
-    """Which elements and components store energy that is not known, and why."""
+    """Which elements and components store energy that is unknown, and why; "" if there are none.
+
+    Args:
+        system: has the force elements.
+        network: the scalar networks; None if there are none.
+    """
     found = [f"{who} ({why})" for who, why in unknown(system).items()]
     if network is not None:
         names = [b.component for b in network.branches if b.component.name in network.unknown]
@@ -318,7 +324,7 @@ PROGRAMS: dict[str, Maker] = {
     "regressor": parameter_programs.regressor_program,
     "inertial_parameters": parameter_programs.values_program,
 }
-"""The register of emitted functions, in emitted order: what a user may ask for, and what makes them."""
+"""All functions that can be requested, in emitted order, each with its maker."""
 
 FAMILIES = (
     Family(network_programs.listings),
@@ -329,10 +335,10 @@ FAMILIES = (
     Family(derivative_programs.listings, derivative_programs.counts),
     Family(remarks=operational_programs.remarks),
 )
-"""What families of functions add to a file besides them, in the order in which the file has it."""
+"""Additions of families of functions to a file, in the order of the file."""
 
 OF_FRAMES = ("frames", "operational_space", "operational_position")
-"""What there is of frames only."""
+"""Functions that exist for frames only."""
 
 ON_REQUEST = (
     "power",
@@ -347,11 +353,15 @@ ON_REQUEST = (
     "regressor",
     "inertial_parameters",
 )
-"""Emitted only where they are asked for."""
+"""Functions that are emitted only if requested."""
 
 
 def parameters_of(derivation: Derived) -> tuple[Quantity, ...]:
-    """The independent parameters; derived ones are computed from them."""
+    """The independent parameters with their defaults; derived ones are computed from them.
+
+    Raises:
+        ModelError: a parameter has no value.
+    """
     found = []
     for p in derivation.system.parameters.values():
         if p.derived:

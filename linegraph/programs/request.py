@@ -1,4 +1,4 @@
-"""What is wanted of a model: which functions, of which frames, with parameters as symbols or as numbers."""
+"""A request for functions: which, for which frames, with parameters as symbols or as numbers."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Request:
-    """Which functions of a model to make.
+    """Which functions of a model to make, and in which form.
 
     Attributes:
         folded: whether parameters become numbers.
-        wanted: further functions besides those made by default, of `register.ON_REQUEST`.
-        only: nothing but these of `register.PROGRAMS`, those `wanted`, and what they call; all if empty.
-        frames: the frames whose kinematics are wanted.
-        prologue: whether what parameters alone determine is hoisted into a function of its own.
+        wanted: functions of `register.ON_REQUEST` in addition to the default ones.
+        only: if not empty, nothing but these of `register.PROGRAMS`, those `wanted`, and functions they
+            call.
+        frames: the frames whose kinematics are needed.
+        prologue: whether subexpressions of parameters alone move into a function of their own.
     """
 
     folded: bool = False

@@ -1,4 +1,4 @@
-"""Derivatives of scalars of the DAG by changes of q, by v, by u, by parameters: columns of matrices."""
+"""Derivatives of scalars of the DAG by changes of q, by v, by u and by parameters, as columns."""
 
 from __future__ import annotations
 
@@ -20,23 +20,31 @@ if TYPE_CHECKING:
     from linegraph.programs.workspace import Workspace
 
 Columns = list[list["Scalar"]]
-"""A column for each symbol, with an entry for each scalar that is differentiated."""
+"""One column per symbol, with an entry for each differentiated scalar."""
 
 SMALL = 8
-"""Up to so many velocities both ways are derived and compared."""
+"""Up to this number of velocities, both kinds of derivatives are made and compared."""
 
 
 def variables(f: Workspace) -> tuple[list[Symbol], list[Symbol], list[Symbol]]:
-    """Changes of q, velocities and inputs."""
+    """The symbols of changes of q, velocities and inputs."""
     velocities: list[Symbol] = [("v", k) for k in range(f.sizes["v"])]
     return tangent.changes(f.tree), velocities, [("u", k) for k in range(f.sizes["u"])]
 
 
 def columns(f: Workspace, given: Sequence[Scalar], by: Sequence[Symbol]) -> Columns:
-    """The derivatives of some scalars by each of some symbols, by the rules of differentiation.
+    """The derivatives of some scalars with respect to some symbols, by the rules of differentiation.
+
+    Args:
+        f: the shared equations.
+        given: the scalars.
+        by: the symbols.
+
+    Returns:
+        One column per symbol.
 
     Raises:
-        ModelError: an algebraic loop has too many unknowns, or a function no derivative.
+        ModelError: an algebraic loop has too many unknowns, or a function has no derivative.
     """
     wanted = {argument for argument, _ in by}
     fixed = {"v", "u", "p"} - wanted if tangent.CHANGE in wanted else {"q", "v", "u", "p"} - wanted
@@ -52,10 +60,19 @@ def columns(f: Workspace, given: Sequence[Scalar], by: Sequence[Symbol]) -> Colu
 def of_motion(
     f: Workspace, acting: Applied, less: Sequence[Scalar], by: Sequence[Symbol]
 ) -> Columns:
-    """The derivatives of ``M a + h - less``, h with what is `acting`.
+    """The derivatives of ``M a + h - less`` with respect to some symbols.
 
-    By q and v those of mechanics come from composites, unless the rules of differentiation give fewer
-    operations, which for a few joints they do; everything else comes by the rules.
+    Those of mechanics by q and v come from composites, unless the rules of differentiation take fewer
+    operations, as they do for a few joints. All others come by the rules.
+
+    Args:
+        f: the shared equations.
+        acting: applied forces that are part of h.
+        less: generalised forces to subtract.
+        by: the symbols.
+
+    Returns:
+        One column per symbol.
     """
     required = f.required_by(acting, f.symbols("a"))
     whole = [x - y for x, y in zip(required, less, strict=True)]
@@ -98,12 +115,18 @@ def _cost(given: Columns) -> int:
 
 
 def turned(rows: Sequence[Sequence[Scalar]]) -> Columns:
-    """The columns of a matrix given by rows, or the other way round."""
+    """The columns of a matrix given by rows, or the reverse."""
     return [list(column) for column in zip(*rows, strict=True)]
 
 
 def matrix(name: str, given: Columns, about: str) -> Result:
-    """A result of these columns."""
+    """A result from the columns of a matrix.
+
+    Args:
+        name: of the result.
+        given: the columns.
+        about: its description.
+    """
     rows = turned(given)
     entries = tuple(entry for row in rows for entry in row)
     return Result(name, (len(rows), len(given)), entries, about)

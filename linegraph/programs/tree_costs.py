@@ -1,7 +1,7 @@
-"""The trees a model may be derived with, and what each costs: `linegraph trees`.
+"""The trees that a model may be derived with, and their costs: `linegraph trees`.
 
-Of a loop any joint may be cut. The candidates are the automatic tree, those that differ from it by another
-cut in one loop, and absolute coordinates and absolute angles for all bodies.
+Any joint of a loop may be cut. The candidates are the automatic tree, those that differ from it by the
+cut of one loop, and absolute coordinates or absolute angles for all bodies.
 """
 
 from __future__ import annotations
@@ -26,23 +26,24 @@ if TYPE_CHECKING:
     from linegraph.model.system import System
 
 MOST = 24
-"""Candidates that are looked at."""
+"""Greatest number of candidates."""
 
 MOST_NAMED = 5
-"""Of more chords than this only the number is told."""
+"""If more chords are cut than this, only their number is printed."""
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A tree and what it costs.
+    """A tree and its cost.
 
     Attributes:
-        choices: what `Model.formulation` takes for it.
+        choices: arguments of `Model.formulation` that choose it.
         cut: the joints and constraints that are chords.
         coordinates: the number of velocities.
         constraints: the number of constraints.
-        operations: of everything forward dynamics needs: M, h, J and γ; or M and h without loops.
-        chosen: whether it is the one the model is derived with.
+        operations: of all quantities that forward dynamics needs: M, h, J and γ, or M and h without
+            loops.
+        chosen: whether the model is derived with it.
     """
 
     choices: dict[str, Any]
@@ -54,7 +55,7 @@ class Candidate:
 
     @property
     def name(self) -> str:
-        """What a user would write for it."""
+        """The line of a model file that chooses it."""
         if "coordinates" in self.choices:
             return f'coordinates = "{self.choices["coordinates"]}"'
         branches = ", ".join(f'"{name}"' for name in self.choices["tree"])
@@ -62,18 +63,22 @@ class Candidate:
 
 
 class Trees(list[Candidate]):
-    """Trees, cheapest first; as text a table."""
+    """Candidate trees, cheapest first; printed as a table."""
 
     def __str__(self) -> str:
-        """A table: operations, velocities, constraints, what is cut, and what to write for each tree."""
+        """A table: operations, velocities, constraints, chords, and the line that chooses the tree."""
         return _table(self)
 
 
 def trees(model: Model | System, tell: Callable[[str], None] | None = None) -> Trees:
-    """The sensible trees, cheapest first; of equal cost the one the model has, then as found.
+    """The sensible trees, cheapest first; among equals the model's own tree first, then as found.
+
+    Args:
+        model: a builder or a frozen system.
+        tell: called with the progress, one line per tree.
 
     Raises:
-        ModelError: the model itself cannot be derived, or there is no equation of motion in any of them.
+        ModelError: the model cannot be derived, or none of the trees has equations of motion.
     """
     system = model.system()
     own = derived(system, Derived)
@@ -92,7 +97,7 @@ def trees(model: Model | System, tell: Callable[[str], None] | None = None) -> T
             if key not in found:
                 found[key] = _judged(derivation, choices, derivation is own)
         except ModelError as error:
-            # a joint that cannot be cut, a tree that cannot be assembled, a law that needs a coordinate
+            # e.g. a joint that cannot be cut, a tree that cannot be assembled, a law that needs a coordinate
             refused = refused or error
     if refused is not None and not found:
         raise placed(refused, system)
@@ -101,7 +106,7 @@ def trees(model: Model | System, tell: Callable[[str], None] | None = None) -> T
 
 
 def _same(own: Derived, choices: dict[str, Any]) -> bool:
-    """Whether choices are those the model is derived with."""
+    """Whether choices are those that the model is derived with."""
     if "coordinates" in choices or own.formulation.absolute or own.formulation.level:
         return False
     return set(choices["tree"]) == set(_moving(own))
@@ -132,7 +137,7 @@ def _moving(derivation: Derived) -> tuple[str, ...]:
 
 
 def _judged(derivation: Derived, choices: dict[str, Any], chosen: bool) -> Candidate:
-    """The cost of a tree."""
+    """A tree with its cost."""
     module = module_of(
         derivation,
         "counted",
@@ -152,7 +157,7 @@ def _judged(derivation: Derived, choices: dict[str, Any], chosen: bool) -> Candi
 
 
 def _table(found: list[Candidate]) -> str:
-    """The candidates for a reader."""
+    """The candidates as a table."""
     rows = [("operations", "velocities", "constraints", "cut", "")]
     for c in found:
         name = f"{c.name}{'   (this model)' * c.chosen}"

@@ -1,4 +1,4 @@
-"""What the emitted functions of a model share: the equations over one DAG."""
+"""The equations of a model over one DAG, which all emitted functions share."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ LOOP_FUNCTION = "algebraic_loop"
 
 
 class Workspace(StateEquations):
-    """The equations over one DAG, in the shortest working frames, and the functions made of them."""
+    """The equations over one DAG, in the shortest working frames, and the functions made from them."""
 
     def __init__(
         self,
@@ -64,13 +64,13 @@ class Workspace(StateEquations):
         frames: Iterable[NamedFrame] = (),
         asked: Iterable[str] = (),
     ) -> None:
-        """Nothing is derived before a function asks for it.
+        """Build the tree over the DAG; quantities are derived when a function needs them.
 
         Args:
-            derivation: the model with its graph and its tree.
+            derivation: the model with its graph and trees.
             folded: whether parameters become numbers.
-            frames: those whose kinematics are asked for.
-            asked: the functions that are, by their keys.
+            frames: the frames whose kinematics are needed.
+            asked: keys of the requested functions.
         """
         self.frames = tuple(frames)
         self.asked = frozenset(asked)
@@ -105,7 +105,7 @@ class Workspace(StateEquations):
         return self.symbols("a"), self.symbols("lam")
 
     def symbols(self, name: str) -> list[Scalar]:
-        """The entries of an argument."""
+        """The symbols of all entries of an argument."""
         return [self.dag.symbol(name, i) for i in range(self.sizes[name])]
 
     def program(
@@ -116,9 +116,17 @@ class Workspace(StateEquations):
         results: tuple[Result, ...],
         guards: Guards = UNGUARDED,
     ) -> Program:
-        """Assemble a function; the arguments follow the contract's order ``p, t, q, v, u, a``.
+        """Assemble a function; its arguments come in the order ``p, t, q, v, u, a``.
 
-        Parameters and time are there exactly when the model has them, inputs when the results need them.
+        Parameters and time are arguments exactly if the model has them, inputs if the results need
+        them.
+
+        Args:
+            name: of the function.
+            about: its description.
+            arguments: names of arguments that it takes in any case.
+            results: its results.
+            guards: checks and calls that come before its results.
         """
         loop = reads("loop", results) and "loop" not in arguments
         if loop:
@@ -141,7 +149,7 @@ class Workspace(StateEquations):
 
     @cached_property
     def loop_arguments(self) -> tuple[str, ...]:
-        """What the algebraic loop depends on: always the state, inputs where they are in it."""
+        """Arguments of the algebraic loop: always the state, and the inputs if it depends on them."""
         assert self.networks is not None
         network = self.networks.network
         rows = (*network.eased, *(e for row in network.eased_jacobian for e in row))
@@ -150,17 +158,17 @@ class Workspace(StateEquations):
 
     @cached_property
     def affine(self) -> bool:
-        """Whether h and Q can be added without losing digits: what inputs drive is in proportion to them."""
+        """Whether h and Q can be added without losing digits: forces of inputs are proportional to them."""
         return self.tree.network is None or self.tree.network.affine
 
     @cached_property
     def carried(self) -> Applied:
-        """What acts at v̇ = 0, all of networks with it where h and Q cannot be added."""
+        """Applied forces in the bias; all of the networks' if h and Q cannot be added."""
         return self.passive if self.affine else self.applied(driven=False, network=ALL)
 
     @cached_property
     def driving(self) -> list[Scalar]:
-        """What acts beside that: efforts and what inputs drive."""
+        """Generalised forces besides the bias: efforts, and elements that inputs drive."""
         if self.affine:
             return self.forces
         forces = self.along(self.applied(driven=True, network=NONE))
@@ -168,26 +176,26 @@ class Workspace(StateEquations):
 
     @cached_property
     def held(self) -> list[Scalar]:
-        """What v̇ = 0 takes of `carried`: h, where Q can be added to it."""
+        """Generalised forces at v̇ = 0 with the forces of `carried`: h, if Q can be added to it."""
         if self.affine:
             return list(self.bias_beside_mass.entries)
         return orthogonality.inverse_dynamics(self.working, None, self.rehoused(self.carried))
 
     @cached_property
     def mass_result(self) -> Result:
-        """M as a result."""
+        """M as the result of a function."""
         rows = self.mass_matrix
         entries = tuple(entry for row in rows for entry in row)
         return Result("M", (len(rows), len(rows)), entries, "mass matrix, both triangles")
 
     @cached_property
     def symmetric(self) -> bool:
-        """Whether the mass matrix is, whatever the networks add."""
+        """Whether the mass matrix is symmetric, with the entries of networks."""
         return self.tree.network is None or self.tree.network.symmetric
 
     @cached_property
     def armatures(self) -> dict[int, Scalar] | None:
-        """What networks add along each velocity of mechanics; None if they tie several to each other."""
+        """Inertia that networks add to each velocity of mechanics; None if they couple several velocities."""
         first = self.tree.layout.mechanical
         found: dict[int, Scalar] = {}
         for i, j, entry in self.stored:
@@ -199,25 +207,25 @@ class Workspace(StateEquations):
 
     @cached_property
     def pattern(self) -> list[list[bool]]:
-        """Where M has entries that are not zero everywhere."""
+        """The entries of M that are not identically zero."""
         size = len(self.v)
         used = [entry != 0 for entry in self.mass_result.entries]
         return [used[i * size : (i + 1) * size] for i in range(size)]
 
     @cached_property
     def driven_constraints(self) -> bool:
-        """Whether constraints depend on inputs: on motions prescribed by some."""
+        """Whether constraints depend on inputs, through motions prescribed by input."""
         results = (Result("J", (), (*self.constraints, *self.constraint_rates), ""),)
         return reads("u", results)
 
     @cached_property
     def bias_result(self) -> Result:
-        """The bias h as a result, where it is wanted alone."""
+        """The bias h as the only result of a function."""
         return _bias_result(self.bias)
 
     @cached_property
     def bias_beside_mass(self) -> Result:
-        """The same where M is wanted with it: from composites or from single links, by count."""
+        """The bias h as a result beside M: from composites or from single links, whichever costs less."""
         if self.working.tree.levelled:
             return self.bias_result
         acting = self.rehoused(self.passive)
