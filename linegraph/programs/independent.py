@@ -13,15 +13,15 @@ if TYPE_CHECKING:
 
 
 def assembly(f: Workspace) -> Assembly:
-    """What the constraints are worth: found once for all functions."""
+    """The assembly of the model, found once for all functions."""
     return f.derivation.assembled
 
 
 def independent(f: Workspace) -> list[tuple[int, int]]:
-    """(position, velocity) of each independent coordinate, as chosen or as the assembly found them.
+    """(position, velocity) of each independent coordinate, as chosen by the user or by the assembly.
 
     Raises:
-        ModelError: a chosen one does not exist, or is none whose rate is its velocity.
+        ModelError: a chosen one does not exist, or its rate is not its velocity.
     """
     wanted = f.tree.system.choices.independent
     pairs = _plain_pairs(f)
@@ -50,7 +50,7 @@ def independent(f: Workspace) -> list[tuple[int, int]]:
 
 
 def _plain_pairs(f: Workspace) -> dict[int, int]:
-    """The position of each velocity that is its derivative."""
+    """For each velocity that is the derivative of a coordinate, the place of that coordinate."""
     return {
         v.index: q.index
         for link in f.tree.links

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def forward_dynamics(f: Workspace) -> tuple[Routine, ...]:
-    """v̇ and λ, by elimination of J with complete pivoting: redundant constraints drop out."""
+    """v̇ and λ, by elimination of J with complete pivoting, which leaves redundant constraints out."""
     if not f.symmetric:
         problem = (
             "its controlled sources make the mass matrix unsymmetric, which cannot be solved together "
@@ -64,7 +64,7 @@ def forward_dynamics(f: Workspace) -> tuple[Routine, ...]:
 
 
 def project(f: Workspace) -> tuple[Program | Routine, ...]:
-    """Q and v onto the constraints."""
+    """The function that projects q and v onto the constraints."""
     if not f.tree.closed:
         return ()
     results = (
@@ -95,15 +95,15 @@ def project(f: Workspace) -> tuple[Program | Routine, ...]:
 
 
 def reduction(f: Workspace) -> tuple[Program | Routine, ...]:
-    """The mechanism in its independent coordinates alone."""
+    """Functions in the independent coordinates: completion, the tangent map T, and reduced equations."""
     chosen = independent(f) if f.tree.closed else None
     if not chosen or f.tree.network is not None:
-        return ()  # states of networks are no coordinates to reduce to
+        return ()  # states of networks cannot be eliminated with the coordinates
     return _complete(f), _tangent(f, len(chosen)), _reduced(f, len(chosen))
 
 
 def _complete(f: Workspace) -> Routine:
-    """All of q and v from the independent ones."""
+    """The function that completes q and v from the independent ones."""
     guess = "q, a guess of all coordinates near the position wanted, "
     calls = (
         *_phi_calls(f),
@@ -127,7 +127,7 @@ def _complete(f: Workspace) -> Routine:
 
 
 def _tangent(f: Workspace, count: int) -> Routine:
-    """T and rest: velocities and accelerations from the independent ones."""
+    """The function for T and rest: velocities and accelerations from the independent ones."""
     calls = (
         *_phi_calls(f),
         "constraint_jacobian",
@@ -151,7 +151,7 @@ def _tangent(f: Workspace, count: int) -> Routine:
 
 
 def _reduced(f: Workspace, count: int) -> Routine:
-    """The equations of motion in the independent coordinates."""
+    """The function for the equations of motion in the independent coordinates."""
     return routine(
         f,
         "reduced_equations",
@@ -167,11 +167,11 @@ def _reduced(f: Workspace, count: int) -> Routine:
 
 
 class Algorithm(NamedTuple):
-    """How a function that iterates or decides works.
+    """The algorithm of a function that iterates or branches.
 
     Attributes:
-        name: of its algorithm.
-        statuses: what it may report.
+        name: of the algorithm.
+        statuses: the status codes it may return.
         calls: the functions it calls.
     """
 
@@ -188,8 +188,17 @@ def routine(
     results: tuple[Result, ...],
     algorithm: Algorithm,
 ) -> Routine:
-    """A routine; it takes the inputs too where what it calls does."""
-    # a motion prescribed by input is in M and h
+    """A function that iterates or branches; it takes the inputs too if a function that it calls does.
+
+    Args:
+        f: the shared equations.
+        name: of the function.
+        about: its description.
+        arguments: names of its arguments after parameters and time.
+        results: its results.
+        algorithm: its algorithm.
+    """
+    # motions prescribed by input enter M and h
     moved = (
         (f.mass_result, f.bias_result) if {"mass_matrix", "equations"} & {*algorithm.calls} else ()
     )

@@ -1,4 +1,4 @@
-"""Emitted functions of systems with constraints: φ, J, γ, and what solves for motion and multipliers."""
+"""Emitted functions of systems with constraints: φ, J and γ, separately and with M and h."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def constraints(f: Workspace) -> tuple[Program | Routine, ...]:
-    """φ, J, J v - b, γ, and everything at once."""
+    """Functions for φ, J, J v - b and γ, separately and together with M and h."""
     if not f.tree.closed:
         return ()
     programs: list[Program | Routine] = []
@@ -59,7 +59,7 @@ def constraints(f: Workspace) -> tuple[Program | Routine, ...]:
 
 
 def _sizes(f: Workspace) -> Program:
-    """What makes J a matrix of pure numbers."""
+    """The function that returns the sizes by which J becomes a matrix of pure numbers."""
     f.dag.label = "lengths of loops"
     numeric = at_some_time(f.derivation)
     found = sizes(f.tree, numeric.tree)
@@ -97,7 +97,12 @@ def _whole(f: Workspace) -> Program:
 
 
 def listings(f: Workspace, chosen: Sequence[str]) -> tuple[Listing, ...]:
-    """Constraints with their multipliers, and the independent coordinates."""
+    """Constraints with their multipliers, and the independent coordinates.
+
+    Args:
+        f: the shared equations.
+        chosen: keys of the functions that are made; not used.
+    """
     if not f.tree.closed:
         return ()
     unique = assembly(f).unique
@@ -119,7 +124,12 @@ def listings(f: Workspace, chosen: Sequence[str]) -> tuple[Listing, ...]:
 
 
 def counts(f: Workspace, chosen: Sequence[str]) -> tuple[tuple[str, int], ...]:
-    """How many constraints are of position, and how many are independent."""
+    """The number NP of holonomic constraints, and the rank of all.
+
+    Args:
+        f: the shared equations.
+        chosen: keys of the functions that are made; not used.
+    """
     if not f.tree.closed:
         return ()
     return (("NP", _positions(f)), ("RANK", assembly(f).rank))
@@ -140,7 +150,7 @@ def _jacobian(f: Workspace) -> Result:
 
 
 def _stabilised(f: Workspace) -> list[Scalar]:
-    """γ, less what brings errors of position and velocity back: 2 alpha (J v - b) + beta² φ."""
+    """γ with Baumgarte's terms: ``γ - 2 α (J v - b) - β² φ`` [Baumgarte 1972]."""
     bias = f.constraint_bias
     if f.tree.system.choices.baumgarte is None:
         return bias
