@@ -1,4 +1,4 @@
-"""Derivations as users see them: the equations as sympy objects, their functions, their looks."""
+"""Derivations as users see them: equations as SymPy objects, functions, and drawings."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ Expr = Any
 
 @dataclass(frozen=True, repr=False)
 class Derivation(Derived, Displayed):
-    """The equations of a system: what `derive` returns.
+    """The equations of a system: the result of `derive`.
 
-    It is a snapshot: later changes of the model do not reach it. Closed forms are derived when they are first
-    needed, and kept. With coordinates q, velocities v and inputs u, symbols all of them,
+    It is a snapshot: later changes of the model do not affect it. Closed forms are derived when they
+    are first needed, and kept. With coordinates q, velocities v and inputs u, all of them symbols,
 
-        M(q) v̇ + h(q, v) = Q(q, v, u) + J^T λ        q̇ = N(q) v        J v̇ = γ
+        M(q) v̇ + h(q, v) = Q(q, v, u) + Jᵀ λ        q̇ = N(q) v        J v̇ = γ
 
-    with λ, J and γ only where there are loops or constraints. Coordinates have the names of joints, their
-    rates are ``name_dot``, accelerations ``a_name``, efforts ``u_name``; velocities that are no rates keep
-    names of their own. `symbol_names` lists what is used where the model has taken one of these already.
+    with λ, J and γ only if there are loops or constraints. Coordinates have the names of joints, their
+    rates are ``name_dot``, accelerations ``a_name``, efforts ``u_name``; velocities that are not rates
+    keep names of their own. `symbol_names` lists the replacements for names that the model has taken.
 
     Attributes:
         system: the frozen system that was derived.
@@ -75,10 +75,10 @@ class Derivation(Derived, Displayed):
         """All closed forms at one level of simplification.
 
         Args:
-            level: ``none`` as derived, ``fast`` put together and factored, ``full`` in the shortest form
+            level: ``none`` as derived, ``fast`` collected and factored, ``full`` in the shortest form
                 found; see `simplification`.
-            budget: how many products of two terms a quantity may take.
-            progress: told what is being simplified, e.g. ``print``.
+            budget: the number of products of two terms that a quantity may take.
+            progress: called with the quantity that is being simplified, e.g. ``print``.
 
         Raises:
             ModelError: there is no such level.
@@ -114,7 +114,7 @@ class Derivation(Derived, Displayed):
 
     @property
     def p(self) -> SimpleNamespace:
-        """The parameters, symbols by their names: ``d.p.m``."""
+        """The parameters as symbols, by their names: ``d.p.m``."""
         from sympy import Symbol
 
         names = self.system.parameters
@@ -122,7 +122,7 @@ class Derivation(Derived, Displayed):
 
     @property
     def mass_matrix(self) -> Expr:
-        """M(q), symmetric, nv x nv."""
+        """Mass matrix M(q), nv x nv."""
         return self.symbolic.mass_matrix
 
     @property
@@ -132,37 +132,37 @@ class Derivation(Derived, Displayed):
 
     @property
     def forces(self) -> Expr:
-        """Q(q, v, u), a column: efforts of joints, and all that inputs drive."""
+        """Q(q, v, u), a column: efforts of joints, and elements and loads that inputs drive."""
         return self.symbolic.forces
 
     @property
     def coriolis_matrix(self) -> Expr:
-        """C(q, v) of the bodies: C v is what of h is quadratic in v, and Ṁ - 2C is skew."""
+        """C(q, v) of the bodies: C v is the part of h quadratic in v, and Ṁ - 2C is skew."""
         return self.symbolic.coriolis_matrix
 
     @property
     def gravity(self) -> Expr:
-        """g(q), a column: what of h the weight makes, N^T ∂V/∂q."""
+        """g(q), a column: the part of h from weight, Nᵀ ∂V/∂q."""
         return self.symbolic.gravity
 
     @property
     def kinetic_energy(self) -> Expr:
-        """½ v^T M v of the bodies, and what prescribed motions add."""
+        """Kinetic energy of the bodies, ½ vᵀ M v plus terms of prescribed motions (J)."""
         return self.symbolic.kinetic_energy
 
     @property
     def potential_energy(self) -> Expr:
-        """The potential energy of weight and springs."""
+        """Potential energy of weight and springs (J)."""
         return self.symbolic.potential_energy
 
     @property
     def coordinate_rates(self) -> Expr:
-        """q̇ = N(q) v, a column."""
+        """Rates of the coordinates q̇ = N(q) v, a column."""
         return self.symbolic.coordinate_rates
 
     @property
     def constraints(self) -> Expr:
-        """φ(q), a column: zero where all loops are closed."""
+        """Residuals φ(q), a column: zero if all loops are closed."""
         return self.symbolic.constraints
 
     @property
@@ -172,19 +172,19 @@ class Derivation(Derived, Displayed):
 
     @property
     def constraint_bias(self) -> Expr:
-        """γ of J v̇ = γ, a column."""
+        """Right-hand side γ of J v̇ = γ, a column."""
         return self.symbolic.constraint_bias
 
     @property
     def multipliers(self) -> Expr:
-        """λ, a column of symbols."""
+        """The multipliers λ, a column of symbols."""
         return self.symbolic.multipliers
 
     def reaction(self, joint: str) -> tuple[Expr, Expr]:
         """Force and torque that a joint or constraint exerts on its head, about the head's origin.
 
-        Resolved in the axes of the head unless the model says otherwise. Accelerations stand in it as symbols
-        ``a_name``, multipliers as λ; put in those of a motion to get numbers.
+        They are resolved in the axes of the head unless the model chooses others. Accelerations occur
+        as symbols ``a_name``, multipliers as λ; substitute those of a motion to get numbers.
 
         Raises:
             ModelError: there is no such joint or constraint.
@@ -192,37 +192,36 @@ class Derivation(Derived, Displayed):
         return self.symbolic.reaction(joint)
 
     def equations(self) -> Equations:
-        """The equations of motion, a `sympy.Eq` for each velocity; then those of constraints.
+        """The equations of motion, one `sympy.Eq` per velocity, then those of constraints.
 
-        They are a list, which notebooks show line by line.
+        Notebooks show the list line by line.
         """
         return self.symbolic.equations()
 
     @property
     def state_space(self) -> StateSpace:
-        """A, B, C, D of a system that is linear, in letters.
+        """A, B, C, D of a linear system, in letters.
 
         Raises:
-            ModelError: it is not linear.
+            ModelError: the system is not linear.
         """
         return self.symbolic.state_space
 
     def linearise(self, at: Mapping[Any, Any] | None = None) -> StateSpace:
         """A, B, C, D for small deviations from an equilibrium or a steady motion, in letters.
 
-        The states are q and v; where loops close or wheels roll, the independent changes of position and
-        velocity that the emitted ``linearize`` speaks of. `linearize` is the same function.
+        The states are q and v; with closed loops or rolling wheels, the independent changes of position
+        and velocity of the emitted ``linearize``. `linearize` is the same function.
 
         Args:
             at: values of coordinates, velocities, inputs and unknowns of algebraic loops: numbers, or
-                expressions of parameters and other letters. Those left out are 0, of quaternions the
-                identity.
-                Numbers that close loops for the parameters' own values alone have these put in; coordinates
-                left out are then where the loops close.
+                expressions of parameters and other letters. Omitted ones are 0, for quaternions the
+                identity. If numbers close the loops only for the default parameters, those are
+                substituted, and omitted coordinates follow from closing the loops.
 
         Raises:
-            ModelError: v̇ is not 0 there, constraints do not hold or the position is singular, the time stands
-                in the equations, or they have too many terms.
+            ModelError: v̇ is not 0 there, constraints do not hold or the position is singular, the
+                equations depend on time, or they have too many terms.
         """
         return self.symbolic.linearise(at)
 
@@ -232,14 +231,14 @@ class Derivation(Derived, Displayed):
         """An expression or matrix with `dynamicsymbols` of `sympy.physics.mechanics` for the state.
 
         Coordinates become functions of time, their rates and accelerations derivatives of these; other
-        velocities and inputs become functions of their own names. `static` goes back.
+        velocities and inputs become functions of their own names. `static` is the inverse.
         """
         from linegraph.symbolic.dynamicsymbols import to_dynamic
 
         return to_dynamic(self.symbolic, expression)
 
     def static(self, expression: Expr) -> Expr:
-        """An expression or matrix of `dynamicsymbols` with the symbols of the derivation."""
+        """An expression or matrix of `dynamicsymbols`, with the symbols of the derivation."""
         from linegraph.symbolic.dynamicsymbols import to_static
 
         return to_static(self.symbolic, expression)
@@ -247,12 +246,13 @@ class Derivation(Derived, Displayed):
     # -- identification
 
     def base_parameters(self) -> BaseParameters:
-        """What of masses, moments, friction and rotor inertias motion can tell apart.
+        """Identifiable combinations of masses, moments, friction and rotor inertias: base parameters.
 
         Each is a sum of standard parameters, with factors in closed form of the model's geometry.
 
         Raises:
-            ModelError: nothing moves, or a relation of coupled or prescribed motions has no closed form.
+            ModelError: nothing moves, or a relation of coupled or prescribed motions has no closed
+                form.
         """
         from linegraph.identification.search import base_parameters
 
@@ -268,14 +268,14 @@ class Derivation(Derived, Displayed):
         """A fast function of one state or many, from the Python that `emit` writes.
 
         Args:
-            what: the name of an emitted function (``mass_matrix``, ``bias``, ``rhs``, ...), or
-                a sympy expression or matrix of this derivation's symbols.
-            frames: bodies, or frames of bodies as ``body.frame``, whose functions may be asked for, such as
+            what: the name of an emitted function (``mass_matrix``, ``bias``, ``rhs``, ...), or a SymPy
+                expression or matrix of this derivation's symbols.
+            frames: bodies, or frames of bodies as ``body.frame``, whose functions are needed, such as
                 ``frame_hand_pose``, or all of them by ``kinematics``.
 
         Returns:
-            A function of what the emitted one takes without parameters: ``f(q)``, ``f(q, v)``, ...
-            Parameters have the model's own values, or those given by ``parameters={"m": 2.0}``.
+            A function with the arguments of the emitted one except parameters: ``f(q)``, ``f(q, v)``,
+                ... Parameters have the model's own values, or those given by ``parameters={"m": 2.0}``.
 
         Raises:
             ModelError: there is no such function, or a symbol is not of this derivation.
@@ -287,13 +287,14 @@ class Derivation(Derived, Displayed):
     # -- looks
 
     def sketch(self, hold: Mapping[str, float] | None = None) -> Scene:
-        """The mechanism, drawn where its loops are closed.
+        """A drawing of the mechanism, in a position that closes its loops.
 
         Args:
-            hold: coordinates that keep the values given, by name.
+            hold: coordinates to keep at given values, by name (rad or m).
 
         Raises:
-            ModelError: there is nothing to draw, a parameter has no value, or no such position.
+            ModelError: there is nothing to draw, a parameter has no value, or there is no such
+                position.
         """
         from linegraph.drawing.mechanism import mechanism_scene
 
@@ -301,9 +302,9 @@ class Derivation(Derived, Displayed):
 
 
 def derive(model: Model | System) -> Derivation:
-    """Unite the terminal graphs, choose the tree, check that equations of motion exist.
+    """Unite the terminal graphs, choose the trees, and check that equations of motion exist.
 
-    The derivation is a snapshot: it keeps a copy of the model, which later changes do not reach.
+    The derivation is a snapshot: it keeps a copy of the model, which later changes do not affect.
 
     Raises:
         ModelError: the model cannot be derived; the message names the component.

@@ -31,7 +31,7 @@ Kind = TypeVar("Kind", bound=Derived)
 
 
 def derived(model: Model | System, kind: type[Kind]) -> Kind:
-    """Unite the terminal graphs, choose the trees, check that equations of motion exist.
+    """Unite the terminal graphs, choose the trees, and check that equations of motion exist.
 
     Args:
         model: a builder, of which a snapshot is taken, or a system.
@@ -58,7 +58,7 @@ def derived(model: Model | System, kind: type[Kind]) -> Kind:
 
 
 def _require_relations(found: Derived) -> None:
-    """Refuse relations that are no constraints of velocity."""
+    """Refuse relations that are not constraints of velocity."""
     if found.system.relations:
         numeric = found.numeric(t=found.system.bounds.sometime)
         require_linear(numeric.tree, random.Random(0))

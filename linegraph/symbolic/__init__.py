@@ -1,1 +1,1 @@
-"""Closed forms for people: simplification, the Coriolis matrix, linear systems, dynamicsymbols."""
+"""Closed forms as SymPy expressions: simplification, Coriolis matrix, linear systems, dynamicsymbols."""

@@ -1,7 +1,7 @@
-"""A motion at a state in letters: whether it stays there, and its matrices for small deviations.
+"""A motion at a state given in letters: whether it is steady, and its matrices for small deviations.
 
-Everything is calculated twice, over polynomials with exact values and in numbers at random points, and
-compared before it is used.
+Everything is calculated twice, with polynomials that have exact values and with numbers at random
+points, and compared before it is used.
 """
 
 from __future__ import annotations
@@ -38,14 +38,14 @@ class AtState:
 
     Args:
         motion: the equations.
-        simplifier: a new one, which writes.
+        simplifier: a new one, which writes the results.
         names: of all symbols, by argument.
-        values: of symbols, in letters; those without a value stay themselves.
-        independent: velocities to keep where there are constraints, if they can be.
-        rank: how many constraints are independent elsewhere; 0 if that is not known.
+        values: expressions for symbols; symbols without one stay as they are.
+        independent: velocities to keep if there are constraints, as far as possible.
+        rank: the number of independent constraints elsewhere; 0 if it is unknown.
 
     Raises:
-        ModelError: the state is not defined, is singular or has too many terms.
+        ModelError: the state is not defined, is singular or leads to too many terms.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class AtState:
         independent: Sequence[int] = (),
         rank: int = 0,
     ) -> None:
-        """Evaluate the equations."""
+        """Evaluate the equations at the state."""
         self.motion, self._names = motion, names
         self._simplifier = simplifier
         ring = simplifier.ring
@@ -71,14 +71,14 @@ class AtState:
             self._freedoms = self._found_freedoms(independent, rank)
 
     def _evaluate(self) -> None:
-        """All equations first: whether floats are among the numbers decides what is zero."""
+        """Evaluate all equations first: whether any number is a float decides on the tolerance for zero."""
         motion = self.motion
         for row in (*motion.mass, motion.right, *motion.jacobian, motion.bias, motion.drift):
             for x in row:
                 self._letters(x)
 
     def _found_freedoms(self, independent: Sequence[int], rank: int) -> Freedoms:
-        """The velocities and changes of position that stay, those of the emitted functions if possible."""
+        """The velocities and changes of position to keep: those of the emitted functions if possible."""
         motion, numbers = self.motion, self._numbers[0]
         mechanical = motion.tree.layout.mechanical
         order = [k for k in reversed(range(mechanical)) if k not in independent]
@@ -100,17 +100,17 @@ class AtState:
         return Freedoms(rows, position_rows, own, free)
 
     def _vanishes(self, x: Scalar) -> bool:
-        """Whether a scalar of the DAG is zero there, beside the terms that it is a sum of."""
+        """Whether a scalar of the DAG is zero at the state, relative to the terms that it is a sum of."""
         size = self._sizes(x)
         return all(abs(n(x)) <= n.zero * n(size) for n in self._numbers)
 
     # -- what must hold
 
     def require_kept(self) -> None:
-        """Refuse a state that breaks constraints or does not solve the algebraic loop of a network.
+        """Refuse a state that violates constraints or does not solve the algebraic loop of a network.
 
         Raises:
-            ModelError: names one.
+            ModelError: names the first of these.
         """
         motion = self.motion
         for what, given in (("position", motion.position), ("velocity", motion.drift)):
@@ -129,10 +129,10 @@ class AtState:
                 raise ModelError(WHO, problem)
 
     def require_steady(self) -> None:
-        """Refuse a state in which something accelerates.
+        """Refuse a state in which a velocity changes.
 
         Raises:
-            ModelError: names it.
+            ModelError: names the velocity.
         """
         if self.motion.jacobian:
             self._checked(self._require_balance)
@@ -144,7 +144,7 @@ class AtState:
                 raise ModelError(WHO, problem)
 
     def _require_balance(self) -> None:
-        """Multipliers must balance what acts."""
+        """Refuse a state in which multipliers cannot balance the applied forces."""
         motion = self.motion
         for numbers in self._numbers:
             found, lam = accelerations(motion, numbers, self._freedoms)
@@ -174,7 +174,7 @@ class AtState:
     # -- what is asked
 
     def matrices(self, slopes: Slopes, *, moving: bool) -> tuple[Rows, Rows]:
-        """The rows of (A B) and of (C D), B and D by all inputs.
+        """The rows of (A B) and of (C D), with B and D for all inputs.
 
         Args:
             slopes: the derivatives of the motion.
@@ -198,7 +198,7 @@ class AtState:
         forms = [e for rows in found for row in rows for e in row]
         for numbers, point in zip(self._numbers, self._simplifier.points, strict=True):
             values = [x for rows in linearised(numbers) for row in rows for x in row]
-            # letters have the size of 1, and so do forms
+            # random values have size 1, and so do forms: 1 is the scale if all values are small
             most = numbers.zero * (1 + max(map(abs, values), default=0))
             for e, x in zip(forms, values, strict=True):
                 if abs(point.expression(e) - x) > most:
@@ -206,7 +206,7 @@ class AtState:
         return found
 
     def _give(self, at: Any, *, moving: bool) -> None:
-        """Let accelerations and multipliers have their values."""
+        """Set the values of accelerations and multipliers."""
         motion = self.motion
         a = [at(0)] * motion.size
         if moving or motion.jacobian:
@@ -231,7 +231,7 @@ class AtState:
 
     @property
     def states(self) -> tuple[str, ...]:
-        """The names of the states: q and v, or what is independent among changes of them."""
+        """The names of the states: q and v, or with constraints the independent changes of both."""
         motion, freedoms = self.motion, self._freedoms
         if not motion.jacobian:
             return (*self._names["q"], *self._names["v"])
@@ -242,6 +242,11 @@ class AtState:
 
 
 def picked(rows: Rows, columns: Sequence[int | None]) -> Expr:
-    """Some columns of a matrix; those that are not there are zero."""
+    """Some columns of a matrix, in the given order.
+
+    Args:
+        rows: the matrix.
+        columns: the places of the columns; None gives a column of zeros.
+    """
     entries = [0 if k is None else row[k] for row in rows for k in columns]
     return sympy.Matrix(len(rows), len(columns), entries)

@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 
 
 class ClosedForms(EquationForms):
-    """The equations of a derivation as SymPy expressions, and their linear forms."""
+    """The equations of a derivation as SymPy expressions, with their linearisations."""
 
     @cached_property
     def state_space(self) -> StateSpace:
-        """A, B, C, D of a system that is linear, in letters.
+        """A, B, C, D of a linear system, in letters.
 
         Raises:
-            ModelError: it is not linear.
+            ModelError: the system is not linear.
         """
         return state_space_of(self)
 

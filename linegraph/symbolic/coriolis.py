@@ -1,12 +1,13 @@
 """The Coriolis matrix C: ``C v`` is the part of the bias quadratic in v, and ``Ṁ - 2C`` is skew.
 
-Where velocities are derivatives of coordinates these are Christoffel's symbols of M,
+If velocities are derivatives of coordinates, it consists of Christoffel's symbols of M,
 
     C_ij = Σ_k Γ_ikj v_k        Γ_ikj = (∂M_ij/∂q_k + ∂M_ik/∂q_j - ∂M_jk/∂q_i)/2
 
-Angular velocities are none; with derivatives D_k along the columns of N (q̇ = N v) the symmetric part of Γ_i
-comes from the bias, S_ijk = (∂²h_i/∂v_j∂v_k)/2, and what is left of D_k M = C + C^T determines the rest but
-for a part that is skew in all three indices, which is taken as zero.
+Angular velocities are not such derivatives, and the formula fails for them. With derivatives D_k along
+the columns of N (q̇ = N v), the symmetric part of Γ_i comes from the bias, S_ijk = (∂²h_i/∂v_j∂v_k)/2.
+The remainder of D_k M = C + Cᵀ determines the rest up to a part that is skew in all three indices,
+which is set to zero.
 """
 
 from __future__ import annotations
@@ -30,13 +31,13 @@ def coriolis_matrix(
     bias: Sequence[Scalar],
     rates: Sequence[Scalar],
 ) -> Rows:
-    """C over a DAG.
+    """The Coriolis matrix C(q, v) over a DAG.
 
     Args:
         dag: of all scalars; q and v are its symbols ``q, k`` and ``v, k``.
-        mass: M.
-        bias: h without elements, whose quadratic part is looked for.
-        rates: N v.
+        mass: M, n x n.
+        bias: h without force elements; its part quadratic in v is used.
+        rates: N v, the rates of the coordinates.
     """
     size = len(mass)
     calculus = Calculus(dag)
@@ -58,7 +59,14 @@ def coriolis_matrix(
 
 
 def gradient_along(dag: Dag, x: Scalar, rates: Sequence[Scalar], size: int) -> list[Scalar]:
-    """``N^T ∂x/∂q``: the generalised force of a potential, up to its sign."""
+    """Gradient of a potential along the velocities, ``Nᵀ ∂x/∂q``: minus its generalised force.
+
+    Args:
+        dag: of all scalars.
+        x: the potential (J).
+        rates: N v, the rates of the coordinates.
+        size: the number of velocities.
+    """
     calculus = Calculus(dag)
     return [_along(calculus, x, direction) for direction in _directions(calculus, rates, size)]
 
@@ -66,7 +74,7 @@ def gradient_along(dag: Dag, x: Scalar, rates: Sequence[Scalar], size: int) -> l
 def _of_bias(
     calculus: Calculus, bias: Sequence[Scalar], slopes: list[Rows]
 ) -> Callable[[int, int, int], Scalar]:
-    """Γ where velocities are no derivatives."""
+    """Christoffel's symbols Γ for velocities that are not derivatives of coordinates."""
     size = len(bias)
     first = [[calculus.derivative(h, ("v", j)) for j in range(size)] for h in bias]
     second = [
@@ -88,7 +96,7 @@ def _of_bias(
 def _directions(
     calculus: Calculus, rates: Sequence[Scalar], size: int
 ) -> list[list[tuple[int, Scalar]]]:
-    """The columns of N by their entries that are not zero."""
+    """The columns of N, by their non-zero entries."""
     return [
         [
             (place, entry)

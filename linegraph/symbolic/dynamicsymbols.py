@@ -14,7 +14,11 @@ Expr = Any
 
 
 def to_dynamic(symbolic: EquationForms, expression: Expr) -> Expr:
-    """Coordinates as functions of time, rates and accelerations as their derivatives.
+    """Replace coordinates by functions of time, and rates and accelerations by their derivatives.
+
+    Args:
+        symbolic: the closed forms whose symbols occur.
+        expression: an expression, a matrix or a list of these.
 
     Example:
         >>> from linegraph import Model, derive
@@ -30,9 +34,14 @@ def to_dynamic(symbolic: EquationForms, expression: Expr) -> Expr:
 
 
 def to_static(symbolic: EquationForms, expression: Expr) -> Expr:
-    """Functions of time and their derivatives as symbols."""
+    """Replace functions of time and their derivatives by the symbols of the derivation.
+
+    Args:
+        symbolic: the closed forms that have the symbols.
+        expression: an expression, a matrix or a list of these.
+    """
     names = _names(symbolic)
-    # the longest first: a derivative holds the function that it is of
+    # highest derivatives first: each contains the function that it is of
     backward = {moving: symbol for symbol, moving in names.items()}
     ordered = sorted(backward, key=lambda e: -_order(e))
     whole = _whole(expression).doit()
@@ -49,7 +58,7 @@ def _whole(expression: Expr) -> Expr:
 
 
 def _names(symbolic: EquationForms) -> dict[Expr, Expr]:
-    """What moves for each symbol."""
+    """For each symbol its function of time or derivative."""
     found: dict[Expr, Expr] = {symbol: dynamicsymbols(symbol.name) for symbol in symbolic.q}
     time = dynamicsymbols._t
     rates = dict(zip(symbolic.coordinate_rates, symbolic.q, strict=True))

@@ -35,17 +35,17 @@ if TYPE_CHECKING:
 
 
 class EquationForms:
-    """A derivation's equations as sympy objects, in closed form.
+    """A derivation's equations as SymPy objects, in closed form.
 
-    Coordinates are written as the joints' names; velocities as ``name_dot``, or by their own names
-    (``root_wx``) where v is not the derivative of q; accelerations as ``a_name``, efforts as ``u_name``.
-    `symbol_names` says what they are called where something else has such a name. Everything is derived when
-    it is first asked for.
+    Coordinates are written as the joints' names; velocities as ``name_dot``, or under their own names
+    (``root_wx``) if v is not the derivative of q; accelerations as ``a_name``, efforts as ``u_name``.
+    `symbol_names` lists replacements for names that are taken. Everything is derived when it is first
+    needed.
 
     Attributes:
         q, v, a, u: column matrices of symbols; `multipliers` are λ.
         names: of all symbols, by argument.
-        simplifier: what writes the closed forms.
+        simplifier: writes the closed forms.
     """
 
     def __init__(
@@ -55,13 +55,13 @@ class EquationForms:
         budget: int = BUDGET,
         progress: Callable[[str], None] | None = None,
     ) -> None:
-        """Derive over a DAG, to be written as sympy expressions.
+        """Derive over a DAG, to be written as SymPy expressions.
 
         Args:
-            derivation: of what.
+            derivation: the system with its trees.
             level: none, fast or full; see `simplification`.
-            budget: how many products of terms a quantity may take.
-            progress: told what is being simplified.
+            budget: the number of products of terms that one quantity may take.
+            progress: called with the quantity that is being simplified.
         """
         self.derivation = derivation
         self._model = derivation.system
@@ -108,23 +108,23 @@ class EquationForms:
 
     @cached_property
     def mass_matrix(self) -> Expr:
-        """M(q) as a sympy Matrix."""
+        """Mass matrix M(q), n x n."""
         return self._matrix("mass matrix", self._derived.mass_matrix, len(self.v))
 
     @cached_property
     def bias(self) -> Expr:
-        """h(q, v) as a sympy column Matrix."""
+        """Bias h(q, v), a column."""
         return self._closed_column("bias", self._derived.bias)
 
     @cached_property
     def forces(self) -> Expr:
-        """Q(q, v, u) as a sympy column Matrix: efforts, and all that inputs drive."""
+        """Q(q, v, u), a column: efforts, and elements and loads that inputs drive."""
         return self._closed_column("forces", self._derived.forces)
 
     def equations(self) -> Equations:
-        """The equations of motion, row by row: M v̇ + h = Q + J^T λ, and of constraints J v̇ = γ.
+        """The equations of motion, row by row: M v̇ + h = Q + Jᵀ λ, and those of constraints, J v̇ = γ.
 
-        Rows of constraints that say nothing, 0 = 0, are left out.
+        Rows of constraints that read 0 = 0 are left out.
         """
         left, right = self.mass_matrix * self.a + self.bias, self.forces
         if self.tree.closed:
@@ -137,9 +137,9 @@ class EquationForms:
 
     @cached_property
     def coriolis_matrix(self) -> Expr:
-        """C(q, v) of the bodies: ``C v`` is what of h is quadratic in v, and ``Ṁ - 2C`` is skew.
+        """C(q, v) of the bodies: ``C v`` is the part of h quadratic in v, and ``Ṁ - 2C`` is skew.
 
-        Entries of networks' states are zero.
+        Entries for states of networks are zero.
         """
         size = self.tree.layout.mechanical
         state = self._derived.state
@@ -152,7 +152,7 @@ class EquationForms:
 
     @cached_property
     def gravity(self) -> Expr:
-        """g(q) as a column Matrix: what of h weight makes, the gradient of its potential."""
+        """g(q), a column: the part of h from weight, the gradient of its potential."""
         state = self._derived.state
         _, potential = orthogonality.energy(state)
         rows = gradient_along(self.dag, potential, state.coordinate_rates, len(self.v))
@@ -160,12 +160,12 @@ class EquationForms:
 
     @cached_property
     def coordinate_rates(self) -> Expr:
-        """q̇ = N(q) v as a column Matrix."""
+        """Rates of the coordinates q̇ = N(q) v, a column."""
         return self._closed_column("coordinate rates", self._derived.coordinate_rates)
 
     @cached_property
     def rates(self) -> Expr:
-        """v̇ = M⁻¹ (Q - h) as a sympy column Matrix: for small systems, and those of networks.
+        """Accelerations v̇ = M⁻¹ (Q - h), a column: for small systems, and for networks.
 
         Raises:
             ModelError: there are constraints.
@@ -175,29 +175,29 @@ class EquationForms:
         return self.mass_matrix.LUsolve(right).applyfunc(sympy.simplify)
 
     def require_open(self, what: str) -> None:
-        """Refuse what constraints or a singular mass matrix do not allow."""
+        """Refuse a quantity that constraints or a singular mass matrix do not allow."""
         if self.tree.closed:
             raise ModelError(what, "there are constraints; their multipliers have no closed form")
         self.derivation.require_inverse(what)
 
     @cached_property
     def energy(self) -> tuple[Expr, ...]:
-        """Kinetic and potential energy, that of springs included; then what networks store, if any."""
+        """Kinetic and potential energy (J), springs included; then the networks' energy, if there are any."""
         return tuple(self.simplifier.all(self._derived.energy, "energy"))
 
     @property
     def kinetic_energy(self) -> Expr:
-        """½ v^T M v of the bodies, and what prescribed motions add."""
+        """Kinetic energy of the bodies, ½ vᵀ M v plus terms of prescribed motions (J)."""
         return self.energy[0]
 
     @property
     def potential_energy(self) -> Expr:
-        """The potential energy of weight and springs."""
+        """Potential energy of weight and springs (J)."""
         return self.energy[1]
 
     @cached_property
     def outputs(self) -> dict[str, Expr]:
-        """What the model asks for by name; what depends on v̇ has it put in."""
+        """The model's outputs, by name; accelerations in them are replaced by their solution."""
         names, known = list(self._observed), set(self.a)
         expressions = self.simplifier.all(self._observed.values(), "outputs")
         if any(x.free_symbols & known for x in expressions):
@@ -207,7 +207,7 @@ class EquationForms:
 
     @property
     def defaults(self) -> dict[str, float]:
-        """The parameters' own values."""
+        """The default values of the parameters, by name."""
         return {
             p.name: float(p.value)
             for p in self._model.parameters.values()
@@ -218,23 +218,24 @@ class EquationForms:
 
     @cached_property
     def constraints(self) -> Expr:
-        """φ(q) as a column Matrix: zero where all loops are closed."""
+        """Residuals φ(q), a column: zero if all loops are closed."""
         return self._closed_column("constraints", self._derived.constraints)
 
     @cached_property
     def constraint_jacobian(self) -> Expr:
-        """J(q), constraints x velocities; the multipliers' names are in `multipliers`."""
+        """J(q), constraints x velocities; `multipliers` has the multiplier of each row."""
         return self._matrix("constraint Jacobian", self._derived.jacobian, len(self.v))
 
     @cached_property
     def constraint_bias(self) -> Expr:
-        """γ of J v̇ = γ as a column Matrix."""
+        """Right-hand side γ of J v̇ = γ, a column."""
         return self._closed_column("constraint bias", self._derived.constraint_bias)
 
     def reaction(self, joint: str) -> tuple[Expr, Expr]:
-        """Force and torque that a joint exerts on its head, one edge alone, v̇ as symbols ``a_name``.
+        """Force and torque of a joint on its head, about the head's origin, with v̇ as symbols ``a_name``.
 
-        Resolved as `Choices.reactions` says, about the head's origin; with loops λ are `multipliers`.
+        They are resolved in the axes of `Choices.reactions`; with loops, λ are the symbols
+        `multipliers`.
 
         Raises:
             ModelError: there is no such joint or constraint.
@@ -264,13 +265,13 @@ class EquationForms:
 
     @cached_property
     def _observed(self) -> dict[str, Scalar]:
-        """The outputs that the model names."""
+        """The model's outputs over the DAG, by name."""
         found, _ = self._derived.outputs
         return dict(zip((output.name for output in self._model.outputs), found, strict=True))
 
     @cached_property
     def motion(self) -> EquationsOfMotion:
-        """The equations over the DAG, as they are linearised."""
+        """The equations over the DAG, in the form in which they are linearised."""
         of = self._derived
         state, exchange = of.state, of.networks
         return EquationsOfMotion.of(
@@ -291,14 +292,14 @@ class EquationForms:
 
     @cached_property
     def paper_matrices(self) -> PaperMatrices:
-        """P, H, C, S, K and the literal (13)-(15) of the paper, over sympy and not simplified."""
+        """P, H, C, S, K and the literal (13)-(15) of the paper, over SymPy, not simplified."""
         return paper_matrices(TreeState(self._sympy_tree, self.q, self.v))
 
     @cached_property
     def printed_matrices(self) -> PrintedMatrices:
-        """All matrices of the paper in its own form of 2n - 1 chords, over sympy and not simplified."""
+        """All matrices of the paper in its own form of 2n - 1 chords, over SymPy, not simplified."""
         return printed_matrices(TreeState(self._sympy_tree, self.q, self.v))
 
     def __repr__(self) -> str:
-        """What it is of, and how far it is simplified."""
+        """The name of the model and the level of simplification."""
         return f"<closed forms of {self._model.name}, level {self.simplifier.level}>"

@@ -13,12 +13,14 @@ if TYPE_CHECKING:
 class Equations(list[Any]):
     """Equations ``left = right``, one `sympy.Eq` each.
 
-    Attributes:
-        notation: how their names look.
+    Args:
+        left: the left-hand sides.
+        right: the right-hand sides, as many.
+        notation: the appearance of names in notebooks.
     """
 
     def __init__(self, left: Any, right: Any, notation: Notation) -> None:
-        """Put both sides together; nothing is evaluated to true or false."""
+        """Pair the sides; SymPy evaluates none of them to true or false."""
         super().__init__(sympy.Eq(a, b, evaluate=False) for a, b in zip(left, right, strict=True))
         self.notation = notation
 

@@ -1,7 +1,8 @@
-"""A state in letters and the same in numbers: what scalars of the DAG are worth, and equations between them.
+"""A state in letters, and the same state in numbers: values of scalars, and linear equations between them.
 
-`Letters` calculates with polynomials and exact values and writes what comes out; `Numbers` does the same at a
-random point to fifty digits, by another way of solving. What both find is compared before it is used.
+`Letters` calculates with polynomials that have exact values, and writes the results. `Numbers` does the
+same at a random point with fifty digits, and solves in another way. Results of both are compared before
+they are used.
 """
 
 from __future__ import annotations
@@ -36,15 +37,15 @@ UNDEFINED = "something is divided by zero there, or has no derivative"
 
 
 class Letters:
-    """Scalars of a DAG as polynomials with inverses, symbols with exact values where they have some.
+    """Scalars of a DAG as polynomials with inverses; some symbols have exact values.
 
     Args:
-        simplifier: of the ring; writes.
-        values: sympy expressions of parameters and other letters.
+        simplifier: has the ring of polynomials, and writes.
+        values: SymPy expressions for some symbols.
     """
 
     def __init__(self, simplifier: Simplifier, values: Mapping[Symbol, Expr]) -> None:
-        """Nothing is calculated yet."""
+        """Convert the values; scalars are evaluated on demand."""
         self._simplifier = simplifier
         ring = simplifier.ring
         exact = self._exact = Exact(simplifier)
@@ -57,7 +58,7 @@ class Letters:
         return self._simplifier.ring.symbol(*symbol) if known is None else known
 
     def __call__(self, x: Scalar) -> Poly:
-        """What a scalar of the DAG is worth.
+        """The value of a scalar of the DAG.
 
         Raises:
             ModelError: it is not defined at the state.
@@ -69,25 +70,36 @@ class Letters:
         return self._simplifier.ring.poly(found)
 
     def give(self, symbol: Symbol, value: Poly) -> None:
-        """Let a symbol have a value from now on."""
+        """Set the value of a symbol for all later evaluations.
+
+        Args:
+            symbol: its argument and place.
+            value: a polynomial of the ring.
+        """
         self._known[symbol] = value
 
     def value(self, e: Expr) -> Poly:
-        """A sympy expression."""
+        """The polynomial of a SymPy expression."""
         return self._exact.value(e)
 
     def solve(
         self, rows: Rows, rights: Rows, through: Rows = NOTHING, direct: Rows = NOTHING
     ) -> tuple[Rows, Rows]:
-        """X of rows X = rights, by elimination without fractions, and through X + direct.
+        """X of ``rows X = rights``, by fraction-free elimination, and ``through X + direct``.
+
+        Args:
+            rows: a square matrix.
+            rights: the right-hand sides, as columns of a matrix.
+            through: rows that multiply X.
+            direct: rows that are added to the products.
 
         Raises:
-            Singular: it is not determined.
+            Singular: X is not determined.
         """
         return self._quotients.solve(rows, rights, through, direct)
 
     def vanishes(self, x: Poly) -> bool:
-        """Whether a scalar is zero."""
+        """Whether a scalar is zero, judged at a random point."""
         return self._quotients.vanishes(x)
 
     def quotient(self, x: Poly) -> Quotient:
@@ -99,25 +111,30 @@ class Letters:
         return self._quotients.shared(parts)
 
     def divided(self, terms: Terms, factor: Terms) -> Terms:
-        """A polynomial over a factor of it."""
+        """The quotient of a polynomial and one of its factors.
+
+        Args:
+            terms: the polynomial.
+            factor: divides it without remainder.
+        """
         return self._quotients.divided(terms, factor)
 
     def written(self, x: Poly) -> Expr:
-        """A scalar as a sympy expression: a quotient without common factors."""
+        """A scalar as a SymPy expression: a quotient without common factors."""
         return quotient_written(self._simplifier, self._quotients.of(x))
 
 
 class Numbers:
-    """The same in numbers with fifty digits, at a random point.
+    """The same state in numbers with fifty digits, at a random point.
 
     Args:
         point: the values of all letters.
-        values: sympy expressions of these.
+        values: SymPy expressions for some symbols.
         ring: knows whether some numbers are floats.
     """
 
     def __init__(self, point: SamplePoint, values: Mapping[Symbol, Expr], ring: Ring) -> None:
-        """Nothing is calculated yet."""
+        """Evaluate the values; scalars are evaluated on demand."""
         self._known: dict[Symbol, Any] = {s: point.expression(e) for s, e in values.items()}
         self._point = point
         self._replay = point.replay(self._symbol)
@@ -125,14 +142,14 @@ class Numbers:
 
     @property
     def zero(self) -> float:
-        """How small something is, beside the terms of its sum, to be zero."""
+        """The size, relative to the terms of its sum, below which a number is zero."""
         return ROUNDED if self._ring.inexact else ZERO
 
     def _symbol(self, symbol: Symbol) -> Any:
         return self._known[symbol] if symbol in self._known else self._point.value(symbol)
 
     def __call__(self, x: Scalar) -> Any:
-        """What a scalar of the DAG is worth.
+        """The value of a scalar of the DAG.
 
         Raises:
             ModelError: it is not defined at the state.
@@ -143,20 +160,31 @@ class Numbers:
             raise ModelError("linearise", UNDEFINED) from None
 
     def give(self, symbol: Symbol, value: Any) -> None:
-        """Let a symbol have a value from now on."""
+        """Set the value of a symbol for all later evaluations.
+
+        Args:
+            symbol: its argument and place.
+            value: a number with fifty digits.
+        """
         self._known[symbol] = value
 
     def value(self, e: Expr) -> Any:
-        """A sympy expression."""
+        """The value of a SymPy expression at the point."""
         return self._point.expression(e)
 
     def solve(
         self, rows: Rows, rights: Rows, through: Rows = NOTHING, direct: Rows = NOTHING
     ) -> tuple[Rows, Rows]:
-        """X of rows X = rights, by Gauss with row pivots, and through X + direct.
+        """X of ``rows X = rights``, by Gaussian elimination with row pivots, and ``through X + direct``.
+
+        Args:
+            rows: a square matrix.
+            rights: the right-hand sides, as columns of a matrix.
+            through: rows that multiply X.
+            direct: rows that are added to the products.
 
         Raises:
-            Singular: it is not determined.
+            Singular: X is not determined.
         """
         size, zero = len(rows), self.zero
         both = [[*row, *right] for row, right in zip(rows, rights, strict=True)]
@@ -185,12 +213,16 @@ class Numbers:
     def basis(
         self, rows: Rows, sizes: Sequence[Any], columns: Sequence[int]
     ) -> list[tuple[int, int]]:
-        """Rows that are independent, each with a column that it determines; earlier columns first.
+        """Independent rows, each with a column that it determines; earlier columns are preferred.
 
         Args:
             rows: of a matrix.
-            sizes: for each row that of the terms its entries are sums of: what is dust is small beside these.
-            columns: those that may be determined.
+            sizes: for each row the size of the terms that its entries are sums of: the scale of
+                rounding.
+            columns: columns that may be determined, in order of preference.
+
+        Returns:
+            (row, column) pairs, ascending.
         """
         left, zero = {i: list(row) for i, row in enumerate(rows) if sizes[i]}, self.zero
         found = []
@@ -210,9 +242,13 @@ class Numbers:
 
 
 def quotient_written(simplifier: Simplifier, x: Quotient) -> Expr:
-    """A quotient as a sympy expression, most signs below positive.
+    """A quotient as a SymPy expression, with most signs in the denominator positive.
 
-    Among floats coefficients are scaled: the largest below is 1.
+    With floats, coefficients are scaled so that the largest of the denominator is 1.
+
+    Args:
+        simplifier: writes numerator and denominator.
+        x: the quotient.
     """
     above, below = x
     if not above:
@@ -228,7 +264,12 @@ def quotient_written(simplifier: Simplifier, x: Quotient) -> Expr:
 
 
 def scaled(terms: Terms, scale: Fraction | int) -> Terms:
-    """Coefficients over a number: whole ones where they are, else floats."""
+    """Terms with coefficients divided by a number: integers if possible, else floats.
+
+    Args:
+        terms: of a polynomial.
+        scale: the divisor.
+    """
     if scale in (1, -1):
         return {term: k * int(scale) for term, k in terms.items()}
     found = {}

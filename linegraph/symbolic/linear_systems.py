@@ -24,10 +24,10 @@ Expr = Any
 
 
 def state_space_of(symbolic: EquationForms) -> StateSpace:
-    """A, B, C, D of a linear system; its outputs are the model's, or all states where it has none.
+    """A, B, C, D of a linear system; its outputs are the model's, or all states if there are none.
 
     Raises:
-        ModelError: it is not linear, depends on the time or has a constant part, or there are constraints.
+        ModelError: it is not linear, depends on time or has a constant part, or there are constraints.
     """
     symbolic.require_open("state space")
     if symbolic.tree.network is not None:
@@ -54,18 +54,18 @@ def state_space_of(symbolic: EquationForms) -> StateSpace:
 def linearise(symbolic: EquationForms, at: Mapping[Any, Any]) -> StateSpace:
     """A, B, C, D for small deviations from an equilibrium or a steady motion.
 
-    In a tree the states are q and v. Where loops close or wheels roll they are the independent changes of
-    position and velocities that the emitted ``linearize`` speaks of, and all others follow.
+    In a tree the states are q and v. With closed loops or rolling wheels they are the independent
+    changes of position and velocities of the emitted ``linearize``, and all others follow.
 
     Args:
         symbolic: the closed forms.
-        at: values of coordinates, velocities, inputs and unknowns of algebraic loops by name or symbol,
-            numbers or expressions of parameters and other letters; those left out are 0, of quaternions the
-            identity.
+        at: values of coordinates, velocities, inputs and unknowns of algebraic loops by name or symbol:
+            numbers, or expressions of parameters and other letters. Omitted ones are 0, for quaternions
+            the identity.
 
     Raises:
-        ModelError: M is singular, v̇ is not 0 there, the constraints do not hold there, or the time stands in
-            the equations.
+        ModelError: M is singular, v̇ is not 0 there, constraints do not hold there, or the equations
+            depend on time.
 
     Example:
         >>> from linegraph import Model, derive
@@ -98,7 +98,7 @@ def linearise(symbolic: EquationForms, at: Mapping[Any, Any]) -> StateSpace:
 
 
 def _space(symbolic: EquationForms, state: AtState, *, moving: bool) -> StateSpace:
-    """The matrices, columns of inputs apart from those of their derivatives."""
+    """The matrices, with columns of inputs separate from those of their derivatives."""
     rows = state.matrices(slopes(symbolic.motion, moving=moving), moving=moving)
     inputs, steep = _inputs(symbolic)
     n = len(state.states)
@@ -113,7 +113,7 @@ def _space(symbolic: EquationForms, state: AtState, *, moving: bool) -> StateSpa
 
 
 def _at(symbolic: EquationForms, values: Mapping[Symbol, Expr]) -> AtState:
-    """The motion at a state; parameters in its values are the model's whatever is assumed of them."""
+    """The motion at a state; parameters are plain symbols, whatever the values assume about them."""
     simplifier = symbolic.simplifier.twin()
     for symbol, e in _states(symbolic).items():
         if symbol not in values:
@@ -124,14 +124,14 @@ def _at(symbolic: EquationForms, values: Mapping[Symbol, Expr]) -> AtState:
         for symbol, e in values.items()
     }
     letters = {x.name for e in plain.values() for x in e.free_symbols}
-    for name in sorted({*own, *letters}):  # the order that sums are grouped in
+    for name in sorted({*own, *letters}):  # fixes the order of terms in sums
         simplifier.ring.symbol("p", name)
     chosen = (_independent(symbolic), _rank(symbolic)) if symbolic.tree.closed else ()
     return AtState(symbolic.motion, simplifier, symbolic.names, plain, *chosen)
 
 
 def _in_numbers(symbolic: EquationForms, given: Mapping[Symbol, Expr]) -> dict[Symbol, Expr] | None:
-    """The state with the parameters' own values, what is left out as loops close there; None without."""
+    """The state at default parameters, omitted coordinates from closing the loops; None if impossible."""
     derivation = symbolic.derivation
     names = {("q", k): quantity.name for k, quantity in enumerate(symbolic.tree.positions)}
     if not symbolic.tree.closed or not _valued(symbolic):
@@ -180,7 +180,7 @@ def _at_rest(symbolic: EquationForms) -> dict[Symbol, Expr]:
 
 
 def _given(symbolic: EquationForms, at: Mapping[Any, Any]) -> dict[Symbol, Expr]:
-    """What the user says."""
+    """The user's values by symbol."""
     symbols = {str(e): symbol for symbol, e in _states(symbolic).items()}
     found = {}
     for name, value in at.items():
@@ -192,14 +192,14 @@ def _given(symbolic: EquationForms, at: Mapping[Any, Any]) -> dict[Symbol, Expr]
 
 
 def _states(symbolic: EquationForms) -> dict[Symbol, Expr]:
-    """The symbols of coordinates, velocities, inputs and unknowns of loops, and how they are written."""
+    """The symbols of coordinates, velocities, inputs and unknowns of loops, with their expressions."""
     columns = {"q": symbolic.q, "v": symbolic.v, "u": symbolic.u}
     columns[LOOP] = [sympy.Symbol(name) for name in symbolic.names[LOOP]]
     return {(kind, k): x for kind, column in columns.items() for k, x in enumerate(column)}
 
 
 def _inputs(symbolic: EquationForms) -> tuple[list[int], list[int | None]]:
-    """The inputs that are no derivatives of others, and the places of their derivatives."""
+    """The inputs that are not derivatives of others, and the places of their derivatives."""
     steep = symbolic.tree.layout.slopes
     own = [k for k in range(len(symbolic.u)) if k not in steep.values()]
     return own, [steep.get(k) for k in own]
@@ -215,7 +215,7 @@ def _independent(symbolic: EquationForms) -> list[int]:
 
 
 def _rank(symbolic: EquationForms) -> int:
-    """How many constraints are independent anywhere, as far as that is known."""
+    """The rank of the constraints, or 0 if it is unknown."""
     return symbolic.derivation.assembled.rank if _valued(symbolic) else 0
 
 

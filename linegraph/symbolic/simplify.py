@@ -1,4 +1,4 @@
-"""`linegraph.simplify`: the pass of `simplification`, loaded when it is called."""
+"""`linegraph.simplify`: the simplification of closed forms, loaded when it is called."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ def simplify(
     rates: Iterable[Any] = (),
     progress: Callable[[str], None] | None = None,
 ) -> Any:
-    """A sympy expression or matrix in the closed form of derivations.
+    """A SymPy expression or matrix in the closed form of derivations.
 
     Args:
-        expression: a sympy expression or matrix.
+        expression: a SymPy expression or matrix.
         level: none, fast or full; see `simplification`.
         rates: symbols and functions in whose products terms are collected, e.g. ``d.v``.
-        progress: told what is being done.
+        progress: called with the current step.
 
     Raises:
         ModelError: it has too many terms.

@@ -1,16 +1,16 @@
 """Small deviations from a state: the equations of motion, their derivatives, and A, B, C, D from these.
 
-With small changes of position d, of velocity dv and of inputs du, and ``r = M a + h - Q - J^T lam``,
+With small changes of position d, of velocity dv and of inputs du, and ``r = M a + h - Q - Jᵀ lam``,
 
-    M da - J^T dlam + ∂r/∂z dz = -∂r        J da = -∂(J a - gam)        ∂F/∂z dz = -∂F
+    M da - Jᵀ dlam + ∂r/∂z dz = -∂r        J da = -∂(J a - gam)        ∂F/∂z dz = -∂F
 
-where F(z) = 0 is an algebraic loop of a network. In a tree d are changes of q itself. Where loops close or
-wheels roll, they go along the velocities (`tangent_space`) and keep the constraints:
+where F(z) = 0 is an algebraic loop of a network. In a tree, d are changes of q itself. With closed
+loops or rolling wheels they go along the velocities (`tangent_space`) and satisfy the constraints:
 
     d = D ds        dv = T dw + S ds        J S = -∂(J v - b) D
 
-with as many s and w as there are freedoms. All of it is derived over the DAG, and put together here over any
-scalars that can solve linear equations: polynomials with exact values, and numbers to compare with.
+with as many s and w as there are freedoms. All of it is derived over the DAG, and solved here over any
+scalars with linear equations: polynomials with exact values, and numbers to compare with.
 """
 
 from __future__ import annotations
@@ -40,33 +40,45 @@ LOOP = "loop"
 
 
 class Calculator(Protocol):
-    """Scalars of the DAG at a state, and linear equations between them."""
+    """Values of scalars of the DAG at a state, and linear equations between them."""
 
     def __call__(self, x: Scalar) -> Any:
-        """What a scalar of the DAG is worth."""
+        """The value of a scalar of the DAG."""
 
     def give(self, symbol: Symbol, value: Any) -> None:
-        """Let a symbol have a value from now on."""
+        """Set the value of a symbol for all later evaluations.
+
+        Args:
+            symbol: its argument and place.
+            value: a scalar of the calculator.
+        """
 
     def solve(self, rows: Rows, rights: Rows, through: Rows = ..., direct: Rows = ...) -> Solution:
-        """X of rows X = rights, and through X + direct."""
+        """X of ``rows X = rights``, and ``through X + direct``.
+
+        Args:
+            rows: a square matrix.
+            rights: the right-hand sides, as columns of a matrix.
+            through: rows that multiply X.
+            direct: rows that are added to the products.
+        """
 
 
 @dataclass(frozen=True)
 class EquationsOfMotion:
-    """The equations of motion over a DAG, v̇ as symbols a, multipliers as lam, unknowns of loops as loop.
+    """The equations of motion over a DAG, with symbols a for v̇, lam for λ, loop for unknowns of loops.
 
     Attributes:
-        tree: its layout.
+        tree: has the layout of the state.
         dag: of all scalars.
         mass: M.
         right: Q - h.
         rates: q̇.
         jacobian, bias, drift: J, gam and J v - b; empty without constraints.
         position: φ.
-        loop: what is zero in the algebraic loop of a network.
-        outputs: what is asked for, by name.
-        inputs: how many there are.
+        loop: residuals of the algebraic loop of a network.
+        outputs: the outputs, by name.
+        inputs: the number of inputs.
     """
 
     tree: KinematicTree
@@ -84,7 +96,13 @@ class EquationsOfMotion:
 
     @classmethod
     def of(cls, found: StateEquations, dag: Dag, **others: Any) -> EquationsOfMotion:
-        """A motion with its constraints, if there are any."""
+        """The equations of a composition, with constraints if there are any.
+
+        Args:
+            found: the equations at a state in symbols.
+            dag: of all scalars.
+            others: the remaining attributes.
+        """
         given: tuple[Any, ...] = ([], [], [], [])
         mass, rates = found.mass_matrix, found.coordinate_rates
         if found.tree.closed:
@@ -104,7 +122,7 @@ class EquationsOfMotion:
         return len(self.mass)
 
     def acting(self, moving: bool) -> list[Scalar]:
-        """What is zero, M a + h - Q - J^T lam, without M a where nothing accelerates."""
+        """Residuals M a + h - Q - Jᵀ lam, without M a if nothing accelerates."""
         lam = [self.dag.symbol(MULTIPLIERS, k) for k in range(len(self.jacobian))]
         a = [self.dag.symbol("a", k) for k in range(self.size)] if moving else []
         found = []
@@ -120,12 +138,12 @@ class EquationsOfMotion:
 
 @dataclass(frozen=True)
 class Freedoms:
-    """Which velocities and changes of position the others follow from where there are constraints.
+    """Velocities and changes of position that determine the others under constraints.
 
     Attributes:
-        rows: constraints of J that are independent, and the velocities that they determine.
-        position_rows: the same of constraints with an equation of position, and changes of position.
-        own, free: the velocities and the changes of position that are left.
+        rows: independent constraints of J, each with a velocity that it determines.
+        position_rows: the same for holonomic constraints and changes of position.
+        own, free: the remaining velocities and changes of position.
     """
 
     rows: list[tuple[int, int]]
@@ -136,7 +154,7 @@ class Freedoms:
 
 @dataclass(frozen=True)
 class Slopes:
-    """The derivatives of a motion, by columns: changes of position, velocities, inputs, unknowns of loops."""
+    """The derivatives of a motion; columns: changes of position, velocities, inputs, unknowns of loops."""
 
     motion: Rows
     bias: Rows
@@ -149,7 +167,7 @@ class Slopes:
 
 
 def slopes(motion: EquationsOfMotion, *, moving: bool) -> Slopes:
-    """Differentiate a motion.
+    """The derivatives of the equations of motion.
 
     Args:
         motion: the equations.
@@ -200,7 +218,13 @@ def slopes(motion: EquationsOfMotion, *, moving: bool) -> Slopes:
 def accelerations(
     motion: EquationsOfMotion, at: Calculator, freedoms: Freedoms
 ) -> tuple[list[Any], list[Any]]:
-    """v̇ and λ at a state; λ of redundant constraints is zero."""
+    """v̇ and λ at a state; λ of redundant constraints is zero.
+
+    Args:
+        motion: the equations.
+        at: the state.
+        freedoms: which constraints are independent.
+    """
     kept = [i for i, _ in freedoms.rows]
     right = [[at(x)] for x in motion.right]
     right += [[at(motion.bias[i])] for i in kept]
@@ -219,7 +243,7 @@ def linear(
     Args:
         motion: the equations.
         slopes: their derivatives.
-        at: a state; it knows a and lam.
+        at: the state, with values of a and lam.
         freedoms: which changes are independent.
     """
     n = motion.size
@@ -255,7 +279,7 @@ def linear(
 def _allowed(
     motion: EquationsOfMotion, slopes: Slopes, at: Calculator, freedoms: Freedoms
 ) -> tuple[Rows, Rows]:
-    """(d, dv, du) by (ds, dw, du), and the rates of s by the same; nothing without constraints."""
+    """(d, dv, du) by (ds, dw, du), and the rates of s by the same; empty without constraints."""
     n, mechanical = motion.size, motion.tree.layout.mechanical
     zero, one = at(0), at(1)
     if not motion.jacobian:
@@ -291,7 +315,7 @@ def _allowed(
 
 
 def _saddle(motion: EquationsOfMotion, at: Calculator, kept: Sequence[int]) -> Rows:
-    """M and the independent rows of J in one matrix: (M -J^T; J 0)."""
+    """M and the independent rows of J in one matrix: (M -Jᵀ; J 0)."""
     mass, jacobian = _at(at, motion.mass), [[at(x) for x in motion.jacobian[i]] for i in kept]
     zero = at(0)
     above = [[*row, *(-j[i] for j in jacobian)] for i, row in enumerate(mass)]
@@ -303,7 +327,7 @@ def _at(at: Calculator, rows: Rows) -> Rows:
 
 
 def _product(left: Rows, right: Rows) -> Rows:
-    """A product of matrices, zeros left out."""
+    """A product of matrices without the products of zeros."""
     found = []
     for row in left:
         used = [(x, other) for x, other in zip(row, right, strict=True) if not _is_zero(x)]

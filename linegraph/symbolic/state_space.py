@@ -1,4 +1,4 @@
-"""Linear systems, symbolically and as other tools have them.
+"""Linear systems in letters, with conversion to other tools.
 
 ẋ = A x + B u + E u̇        y = C x + D u + F u̇
 """
@@ -31,9 +31,9 @@ class StateSpace:
 
     Attributes:
         states, inputs, outputs: names, in the order of rows and columns.
-        A, B, C, D: sympy matrices.
-        E, F: of the inputs' derivatives; zero unless stores are tied to sources.
-        defaults: the parameters' own values.
+        A, B, C, D: SymPy matrices.
+        E, F: for the inputs' derivatives; zero unless stores are tied to sources.
+        defaults: the default values of the parameters.
 
     Example:
         >>> from linegraph import Model, derive
@@ -59,7 +59,7 @@ class StateSpace:
     defaults: Mapping[str, float]
 
     def __repr__(self) -> str:
-        """Its names."""
+        """The names of its states, inputs and outputs."""
         names = (", ".join(part) for part in (self.states, self.inputs, self.outputs))
         return "<linear system: states {}; inputs {}; outputs {}>".format(*names)
 
@@ -75,12 +75,12 @@ class StateSpace:
 
     @property
     def halves(self) -> tuple[tuple[Expr, Expr, Expr], tuple[Expr, Expr, Expr]]:
-        """(A, B, E) and (C, D, F)."""
+        """The matrices of both equations: (A, B, E) and (C, D, F)."""
         return (self.A, self.B, self.E), (self.C, self.D, self.F)
 
     @property
     def shifted(self) -> StateSpace:
-        """The same with states ``x - E u``, in which no derivative of an input is needed but by outputs."""
+        """The system with states ``x - E u``, which needs derivatives of inputs in outputs only."""
         if not any(self.E):
             return self
         at = Letters(Simplifier(_named), {})
@@ -92,14 +92,18 @@ class StateSpace:
         return replace(self, B=moved(self.A, self.B), D=moved(self.C, self.D), E=zero)
 
     def transfer_function(self, s: Expr = None) -> Expr:
-        """H(s), outputs x inputs: quotients of polynomials in s (default the symbol ``s``).
+        """The matrix H(s), outputs x inputs: quotients of polynomials in s.
 
-        Numerator and denominator are collected in s and have no common factor; what all coefficients of one
-        share stands before it. Coefficients are no fractions, and that of the denominator's highest power
-        has more positive terms than negative ones; among floats its largest number is 1.
+        Numerator and denominator are collected in s and have no common factor; a factor that all
+        coefficients of one share comes before it. Coefficients are not fractions, and that of the
+        denominator's highest power has more positive terms than negative ones; with floats its largest
+        number is 1.
+
+        Args:
+            s: the variable; by default the symbol ``s``.
 
         Raises:
-            ModelError: it has too many terms, or something of the model has the symbol's name.
+            ModelError: it has too many terms, or the model uses the symbol's name.
         """
         symbol = s if isinstance(s, sympy.Symbol) else sympy.Symbol("s")
         if any(symbol in part.free_symbols for part in self._matrices):
@@ -113,10 +117,13 @@ class StateSpace:
         return (self.A, self.B, self.C, self.D, self.E, self.F)
 
     def numeric(self, parameters: Mapping[str, float] | None = None) -> tuple[Any, Any, Any, Any]:
-        """A, B, C, D as arrays, shifted where need be; parameters in place of the model's own.
+        """A, B, C, D as arrays, of the shifted system if there are derivatives of inputs.
+
+        Args:
+            parameters: values instead of the model's own, by name.
 
         Raises:
-            ModelError: an output has a derivative of an input, or a parameter has no value.
+            ModelError: an output contains a derivative of an input, or a parameter has no value.
         """
         import numpy
 
@@ -128,7 +135,7 @@ class StateSpace:
         values = {**self.defaults, **(parameters or {})}
         matrices = []
         for matrix in (space.A, space.B, space.C, space.D):
-            # letters may be symbols with assumptions
+            # by name: letters may be symbols with assumptions
             found = matrix.subs(
                 {x: values[x.name] for x in matrix.free_symbols if x.name in values}
             )
@@ -139,13 +146,13 @@ class StateSpace:
         return matrices[0], matrices[1], matrices[2], matrices[3]
 
     def to_scipy(self, parameters: Mapping[str, float] | None = None) -> Any:
-        """A ``scipy.signal.StateSpace``."""
+        """The system as a ``scipy.signal.StateSpace``, at given parameters."""
         from scipy.signal import StateSpace as Found
 
         return Found(*self.numeric(parameters))
 
     def to_control(self, parameters: Mapping[str, float] | None = None) -> Any:
-        """A ``control.StateSpace`` with its names."""
+        """The system as a ``control.StateSpace`` with its names, at given parameters."""
         import control
 
         return control.ss(
@@ -157,7 +164,7 @@ class StateSpace:
 
 
 class _Response:
-    """C (s I - A)^-1 (B + s E) + D + s F, in letters."""
+    """The transfer function ``C (s I - A)^-1 (B + s E) + D + s F``, in letters."""
 
     def __init__(self, space: StateSpace, s: Expr) -> None:
         self.space, self.s = space, s
@@ -166,11 +173,11 @@ class _Response:
         self.letters = Letters(self.simplifier, {})
         parts = (part for half in space.halves for part in half)
         for letter in sorted({s}.union(*(part.free_symbols for part in parts)), key=str):
-            self.letters.value(letter)  # the order that sums are grouped in
+            self.letters.value(letter)  # fixes the order of terms in sums
         self.place = _place(self.letters.value(s))
 
     def written(self) -> Expr:
-        """The matrix, held against numbers at random points."""
+        """The matrix, compared with numbers at random points."""
         try:
             found = [[self._collected(x) for x in row] for row in self._solved(self.letters)]
         except Swollen:
@@ -186,7 +193,7 @@ class _Response:
         return sympy.Matrix(*shape, [x for row in found for x in row])
 
     def _solved(self, at: Letters | Numbers) -> Any:
-        """The rows over polynomials or numbers."""
+        """The rows of the matrix, over polynomials or numbers."""
         space = self.space
         parts = (space.A, space.B, space.C, space.D, space.E, space.F)
         A, B, C, D, E, F = ([[at.value(x) for x in row] for row in part.tolist()] for part in parts)
@@ -202,7 +209,7 @@ class _Response:
         return at.solve(inner, left, C, direct)[1]
 
     def _collected(self, x: Any) -> Expr:
-        """A quotient, both parts collected in s."""
+        """A quotient with both parts collected in s."""
         above, below = self.letters.quotient(x)
         powers = self._powers(below)
         leading = powers[max(powers)]
@@ -222,12 +229,12 @@ class _Response:
         return found
 
     def _polynomial(self, terms: Terms, scale: Any) -> Expr:
-        """What all coefficients share times a polynomial in s, over a number."""
+        """The common factor of all coefficients times a polynomial in s, over a number."""
         if not terms:
             return sympy.Integer(0)
         powers = self._powers(terms)
         outside = self.letters.shared(list(powers.values()))
-        if self.simplifier.ring.inexact:  # numbers are left to the coefficients
+        if self.simplifier.ring.inexact:  # keep floats in the coefficients
             outside = scaled(outside, gcd(*map(int, outside.values())))
         inner = [
             self.simplifier.of_terms(scaled(self.letters.divided(part, outside), scale)) * self.s**n
@@ -241,7 +248,7 @@ def _named(symbol: Any) -> Expr:
 
 
 def _place(x: Any) -> int:
-    """The generator that a symbol is."""
+    """The generator of the ring that a symbol is."""
     (term,) = x.terms
     ((place, _),) = x.ring.exponents(term)
     return int(place)
