@@ -20,15 +20,8 @@ FEWEST_WORDS = 4
 FEWEST_ARGUMENTS = 2
 
 PENDING = {
-    #
     "codegen",
     "ir",
-    #
-    "dynamics",
-    "kinematics",
-    "numeric",
-    "programs",
-    "symbolic",
 }
 """Packages and modules of the root whose docstrings are still to be rewritten. The list is to shrink."""
 
