@@ -148,7 +148,7 @@ class SympyWriter:
         return sympy.sqrt(inner) if kind == ROOT else 1 / inner
 
     def angle(self, harmonic: Harmonic) -> Expr:
-        """A sum of angles."""
+        """A sum of multiples of angles as an expression."""
         parts = [n * self._inner(dict(self.ring.angles[angle])) for angle, n in harmonic]
         return sympy.Add(*parts)
 
