@@ -111,7 +111,7 @@ def slopes(state: TreeState, a: Sequence[Scalar]) -> TorqueDerivatives:
 
 
 class _Momentum(NamedTuple):
-    """Twice the velocity of what a joint carries: of its origin, and the moments ∫ V dm and ∫ V rᵀ dm."""
+    """Twice the velocity of a composite: of its origin, and the moments ∫ V dm and ∫ V rᵀ dm."""
 
     velocity: Vector
     first: Vector

@@ -157,7 +157,7 @@ def reaction_quantities(system: System, names: Sequence[str]) -> tuple[Quantity,
     """Names and units of reactions: force, then torque on each joint's head.
 
     Args:
-        system: says in whose axes reactions are resolved.
+        system: chooses the axes in which reactions are resolved.
         names: the joints and constraints.
     """
     axes = reaction_axes(system)

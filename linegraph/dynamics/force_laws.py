@@ -133,7 +133,7 @@ class ForceLaws:
         return x, vector.scale(self._through(element, x, v), direction)
 
     def wrench(self, acting: PointForce) -> tuple[Vector, Vector]:
-        """Force (N) and torque (N m) of a load, in ground axes, about its terminal's origin."""
+        """Force (N) of a load or drag on its body, and torque about its terminal (N m), in ground axes."""
         _, point = self.terminal(acting.at)
         return acting.wrench(self._algebra, point, self.resolve)
 

@@ -52,7 +52,7 @@ class EdgeMotion:
 
 @dataclass
 class Exchange:
-    """A network at a state, with what it exchanges with mechanics.
+    """A network at a state, coupled to mechanics.
 
     Attributes:
         network: the derived network.

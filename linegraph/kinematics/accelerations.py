@@ -90,9 +90,8 @@ class Crossing(NamedTuple):
     Attributes:
         before: the near link's angular velocity (rad/s).
         turning: angular velocity of the far link relative to the near one (rad/s).
-        angular: what the joint adds to the angular acceleration (rad/s²), without ``before x turning``.
-        linear: what it adds to the acceleration of the far link's origin (m/s²), Coriolis term
-            included.
+        angular: the joint's part of the angular acceleration (rad/s²), without ``before x turning``.
+        linear: its part of the acceleration of the far link's origin (m/s²), Coriolis term included.
     """
 
     before: Vector

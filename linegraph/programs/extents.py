@@ -1,4 +1,4 @@
-"""What readers expect as the extents of arrays: counts by their names, rather than plain numbers."""
+"""Names of counts for the extents of arrays: emitted code has ``q[NQ]`` instead of ``q[7]``."""
 
 from __future__ import annotations
 
@@ -28,11 +28,14 @@ EXTENTS = {
     "B": ("NDX", "NU"),
     **dict.fromkeys(("hr", "s", "w"), ("NI",)),
 }
-"""The counts of arguments and results, by the names that these have in all functions."""
+"""The counts of arguments and results, by names that mean the same in all functions."""
 
 
 def named(module: Module) -> Module:
-    """The module with the names of counts in all arguments and results that do not name their own."""
+    """The module with counts as extents of all arguments and results that have none yet.
+
+    A count is used only if its value is the actual size.
+    """
     counts = counts_of(module)
     listed = {result: x.count for x in module.listings for result in x.sizes}
 

@@ -137,7 +137,7 @@ def _moving(derivation: Derived) -> tuple[str, ...]:
 
 
 def _judged(derivation: Derived, choices: dict[str, Any], chosen: bool) -> Candidate:
-    """A tree with its cost."""
+    """A candidate: a tree with its chords, its coordinates and the operations of its equations."""
     module = module_of(
         derivation,
         "counted",

@@ -14,7 +14,7 @@ from linegraph.algebra.differentiation import Calculus, TermSizes
 from linegraph.dynamics.symbol_names import MULTIPLIERS
 from linegraph.errors import ModelError
 from linegraph.symbolic.letters import Letters, Numbers
-from linegraph.symbolic.simplification.polynomial import Swollen
+from linegraph.symbolic.simplification.generators import Swollen
 from linegraph.symbolic.simplification.quotients import Singular
 from linegraph.symbolic.small_motions import LOOP, Freedoms, accelerations, linear
 

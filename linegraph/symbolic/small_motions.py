@@ -154,7 +154,18 @@ class Freedoms:
 
 @dataclass(frozen=True)
 class Slopes:
-    """The derivatives of a motion; columns: changes of position, velocities, inputs, unknowns of loops."""
+    """The derivatives of a motion; columns: changes of position, velocities, inputs, unknowns of loops.
+
+    Attributes:
+        motion: of the residuals M a + h - Q - Jᵀ lam.
+        bias: of the residuals J a - gam.
+        drift: of J v - b.
+        rates: of q̇; empty with constraints.
+        loop: of the residuals of algebraic loops.
+        outputs: of the outputs.
+        by_solution: of the outputs by a and lam.
+        adjoint: ad v of ḋ = dv - (ad v) d; empty without constraints.
+    """
 
     motion: Rows
     bias: Rows
@@ -252,7 +263,7 @@ def linear(
     by = len(moved) or len(motion.rates) + n + motion.inputs
 
     def along(rows: Rows) -> tuple[Rows, Rows]:
-        """Derivatives by what is independent, and by the unknowns of loops."""
+        """Derivatives by the independent changes, and by the unknowns of loops."""
         values = _at(at, rows)
         direct = [row[:by] for row in values]
         return _product(direct, moved) if moved else direct, [row[by:] for row in values]

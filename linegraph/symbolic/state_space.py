@@ -15,7 +15,7 @@ import sympy
 from linegraph.errors import ModelError
 from linegraph.symbolic.letters import Letters, Numbers, scaled
 from linegraph.symbolic.simplification import Simplifier
-from linegraph.symbolic.simplification.polynomial import Swollen, unit
+from linegraph.symbolic.simplification.generators import Swollen, unit
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -11,15 +11,8 @@ from hypothesis import strategies as st
 from rings import expression, k, l, m, polynomial, same, x, y, z
 from sympy import cos, sin, sqrt
 
-from linegraph.symbolic.simplification.polynomial import (
-    MOST_ANGLES,
-    ZERO_DIGIT,
-    Ring,
-    Swollen,
-    TooHigh,
-    frozen,
-    unit,
-)
+from linegraph.symbolic.simplification.generators import ZERO_DIGIT, Swollen, TooHigh, unit
+from linegraph.symbolic.simplification.polynomial import MOST_ANGLES, Ring, frozen
 
 
 @st.composite

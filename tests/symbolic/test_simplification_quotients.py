@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from rings import expression, k, l, m, polynomial, same, x, y
 from sympy import cos, sin, sqrt
 
-from linegraph.symbolic.simplification.polynomial import Ring, Swollen
+from linegraph.symbolic.simplification.generators import Swollen
+from linegraph.symbolic.simplification.polynomial import Ring
 from linegraph.symbolic.simplification.proof import SamplePoint
 from linegraph.symbolic.simplification.quotients import Quotients, Singular
 

@@ -1,16 +1,16 @@
-"""Closed forms as a book prints them: `Simplifier`, from what was derived to the shortest form that is found.
+"""Closed forms as in a textbook: `Simplifier`, from a derived expression to the shortest form found.
 
-    DAG node ──expanded──→ terms ──put together──→ fewer terms ──factored──→ sympy expression
+    DAG node ──expanded──→ terms ──collected──→ fewer terms ──factored──→ SymPy expression
 
 Levels:
 
-    none    as derived, every intermediate put in
-    fast    multiplied out, equal terms met, sines put together, common factors out
-    full    the same in the angles and with the grouping that leave the shortest expression
+    none    as derived, with all intermediates substituted
+    fast    multiplied out, like terms and sines collected, common factors out
+    full    the same in the angles and with the grouping that give the shortest expression
 
-Each arrow is one rewrite, and after each the new form is compared with what was derived, at random points
-to fifty digits; a form that differs is not used. What is done depends on the numbers of terms alone, never on
-time: the same input gives the same form everywhere.
+Each arrow is one rewrite. After each, the new form is compared with the derived expression at random
+points to fifty digits; a form that differs is not used. All decisions depend on numbers of terms, never
+on time, so that the same input gives the same form on every machine.
 """
 
 from __future__ import annotations
@@ -25,8 +25,9 @@ from linegraph.algebra.sympy_scalars import to_sympy
 from linegraph.errors import ModelError
 from linegraph.symbolic.simplification.angles import fewest, merged, spread
 from linegraph.symbolic.simplification.factoring import SympyWriter, in_decimals
+from linegraph.symbolic.simplification.generators import Swollen
 from linegraph.symbolic.simplification.memory import Memory
-from linegraph.symbolic.simplification.polynomial import Ring, Swollen
+from linegraph.symbolic.simplification.polynomial import Ring
 from linegraph.symbolic.simplification.proof import EXACT, INEXACT, SamplePoint
 
 if TYPE_CHECKING:
@@ -40,33 +41,33 @@ if TYPE_CHECKING:
 LEVELS = ("none", "fast", "full")
 
 BUDGET = 1_000_000
-"""How many products of two terms a quantity may take: some seconds."""
+"""The number of products of two terms that a quantity may take: a few seconds."""
 
 MOST_TERMS = 4000
 """Longer polynomials are not written."""
 
 POINTS = 2
-"""At how many points each form is compared."""
+"""The number of points at which each form is compared."""
 
 SHORT = 60
-"""Of polynomials with more terms products of sines are not written as sums."""
+"""In polynomials with more terms, products of sines are not written as sums."""
 
 LONG = 400
-"""Of polynomials with more terms one form is written and not several."""
+"""For polynomials with more terms, one form is written, not several."""
 
 
 class Simplifier:
-    """Writes scalars of a DAG as sympy expressions.
+    """Writes scalars of a DAG as SymPy expressions.
 
     Args:
-        symbol: the sympy symbol of a symbol of the DAG, by its argument and place.
+        symbol: returns the SymPy symbol of a symbol of the DAG, given its argument and place.
         level: none, fast or full.
-        budget: how many products of two terms a quantity may take.
-        progress: told what is being done.
-        units: symbols of four that are the entries of a unit quaternion, x, y, z, w.
+        budget: the number of products of two terms that a quantity may take.
+        progress: called with the current step.
+        units: groups of four symbols that are the entries x, y, z, w of a unit quaternion.
 
     Attributes:
-        rejected: forms that differed from what was derived; empty unless there is a bug.
+        rejected: forms that differed from the derived expression; empty unless there is a bug.
 
     Example:
         >>> from linegraph.ir.dag import Dag
@@ -85,7 +86,7 @@ class Simplifier:
         progress: Callable[[str], None] | None = None,
         units: Iterable[Sequence[Symbol]] = (),
     ) -> None:
-        """Nothing is simplified yet; equal polynomials are written once."""
+        """Start with an empty ring; equal polynomials are written only once."""
         if level not in LEVELS:
             raise ModelError(f'level "{level}"', f"is not known; there are {', '.join(LEVELS)}")
         self.level = level
@@ -105,13 +106,23 @@ class Simplifier:
         self._written: dict[Any, Expr] = {}
 
     def __call__(self, x: Scalar, what: str = "expression") -> Expr:
-        """The closed form of one scalar."""
+        """The closed form of one scalar.
+
+        Args:
+            x: a scalar of the DAG.
+            what: its name in messages.
+        """
         return self.all([x], what)[0]
 
     def all(self, given: Iterable[Scalar], what: str = "expression") -> list[Expr]:
         """The closed forms of the scalars of one quantity, within one budget.
 
-        What is refused leaves nothing behind: later quantities are as if it had not been asked for.
+        If the quantity is refused, everything learnt from it is forgotten: later quantities come out as
+        if it had never been requested.
+
+        Args:
+            given: scalars of the DAG.
+            what: name of the quantity in messages.
 
         Raises:
             ModelError: they have too many terms, or a power that is too high.
@@ -138,36 +149,36 @@ class Simplifier:
     # -- what others calculate with
 
     def twin(self) -> Simplifier:
-        """Another one that knows nothing yet."""
+        """Another simplifier with the same settings and an empty ring."""
         return Simplifier(self._symbol, self.level, self._budget, units=self._units)
 
     @property
     def ring(self) -> Ring:
-        """The polynomials that are written."""
+        """The ring of the polynomials that are written."""
         return self._ring
 
     @property
     def points(self) -> list[SamplePoint]:
-        """Where forms are compared."""
+        """The points at which forms are compared."""
         return self._points
 
     def start(self) -> None:
-        """Let the budget count from here."""
+        """Start a new budget from here."""
         self._ring.budget = self._ring.work + self._budget
 
     def known(self, e: Expr) -> Symbol | None:
-        """The symbol that is written as an expression, if one is."""
+        """The symbol that is written as an expression; None if there is none."""
         return self._names.get(e)
 
     def define(self, symbol: Symbol, e: Expr, *, valued: bool = False) -> None:
-        """Write a symbol as an expression from now on.
+        """Set the expression that a symbol is written as.
 
         Args:
             symbol: its argument and place.
-            e: how it is written.
-            valued: whether the expression is its value, too.
+            e: the expression.
+            valued: whether the expression is also its value.
         """
-        if valued:  # before it is known by its name
+        if valued:  # while the expression is not yet known as the symbol
             for point in self._points:
                 point.define(symbol, e)
         self._defined[symbol] = e
@@ -199,7 +210,7 @@ class Simplifier:
         return self._written[key]
 
     def _written_as(self, terms: Terms, derived: list[Any]) -> Expr:
-        """The shortest form that holds."""
+        """The shortest form that passes the comparison."""
         writer = self._writer
         if not self._holds(terms, derived):
             raise AssertionError("a polynomial differs from what was derived: a bug")
@@ -216,7 +227,7 @@ class Simplifier:
         return writer.expanded(terms)
 
     def _forms(self, terms: Terms) -> list[Terms]:
-        """The polynomial, and the same in other angles."""
+        """The polynomial, and its forms in other angles."""
         if not any(
             self._ring.is_wave(place) for t in terms for place, _ in self._ring.exponents(t)
         ):
@@ -224,7 +235,8 @@ class Simplifier:
         if self.level == "fast":
             return [merged(self._ring, terms)]
         forms = [terms, merged(self._ring, terms, doubled=False), merged(self._ring, terms)]
-        with contextlib.suppress(Swollen):  # the search alone has become too long
+        # if the search exceeds the budget, the forms found so far remain
+        with contextlib.suppress(Swollen):
             forms.append(fewest(self._ring, terms))
             if len(terms) <= SHORT:
                 forms.append(spread(self._ring, terms))
@@ -232,7 +244,7 @@ class Simplifier:
         return [form for n, form in enumerate(forms) if form not in forms[:n] and len(form) <= most]
 
     def _inner(self, terms: Terms) -> Expr:
-        """What stands inside a function, an angle or a root."""
+        """The content of a function, an angle or a root as an expression."""
         key = frozenset(terms.items())
         if key not in self._written:
             self._written[key] = self._writer.written(terms)
@@ -245,14 +257,20 @@ class Simplifier:
     def _agree(self, found: list[Any], derived: list[Any], scales: list[Any]) -> bool:
         most = INEXACT if self._ring.inexact else EXACT
         return all(
-            # the symbols are of the size of 1, and so are terms that cancel altogether
+            # 1 is the size of the symbols, and so of terms that cancel completely and leave no scale
             abs(a - b) <= most * (1 + scale + abs(b))
             for a, b, scale in zip(found, derived, scales, strict=True)
         )
 
 
 def bar(done: int, of: int, width: int = 20) -> str:
-    """How far something is, drawn."""
+    """A progress bar as text.
+
+    Args:
+        done: number of finished steps.
+        of: number of all steps.
+        width: number of characters between the brackets.
+    """
     full = width * done // max(of, 1)
     return f"[{'#' * full}{'.' * (width - full)}] {done}/{of}"
 

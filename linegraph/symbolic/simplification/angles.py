@@ -1,13 +1,13 @@
-"""The trigonometric forms of a polynomial: squares and products of sines put together, angles chosen anew.
+"""The trigonometric forms of a polynomial: squares and products of sines collected, angles chosen anew.
 
-A polynomial comes with sines and cosines of single angles, no cosine squared. What people write instead is
-found by rules that each replace two terms by one, m being the rest of both:
+A polynomial comes with sines and cosines of single angles, and without squares of cosines. The usual
+forms are found by rules that each replace two terms by one, m being the common rest:
 
     m - m sin^2 a            = m cos^2 a            m - 2 m sin^2 a           = m cos 2a
     m cos a cos b - m sin a sin b = m cos(a + b)    m sin a cos b + m cos a sin b = m sin(a + b)
 
-and the like with a - b; a product sin a cos a is half of sin 2a. Other angles, a + b in place of b, may
-leave fewer terms: those of parallel axes do.
+and the like with a - b; a product sin a cos a is half of sin 2a. Other angles, such as a + b instead of
+b, may leave fewer terms: those of parallel axes do.
 """
 
 from __future__ import annotations
@@ -15,26 +15,27 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from linegraph.symbolic.simplification.generators import COS, SIN, Harmonic, unit
 from linegraph.symbolic.simplification.numbers import Terms, gather, plain
-from linegraph.symbolic.simplification.polynomial import COS, SIN, Harmonic, Poly, Ring, unit
 
 if TYPE_CHECKING:
     from linegraph.ir.dag import Number
+    from linegraph.symbolic.simplification.polynomial import Poly, Ring
 
 EQUAL = 1e-12
-"""Coefficients that are floats are equal if they differ by less than this, relatively."""
+"""Relative difference below which two floats are equal coefficients."""
 
 SEARCH = 10_000
-"""How much work on terms the search for other angles may take."""
+"""The work on terms that the search for other angles may take."""
 
 
 def merged(ring: Ring, terms: Terms, *, doubled: bool = True) -> Terms:
-    """Terms put together until no rule applies.
+    """Collect terms until no rule applies.
 
     Args:
         ring: of the terms.
         terms: with sines and cosines of angles.
-        doubled: whether double angles may arise from one angle.
+        doubled: whether double angles may be formed from one angle.
     """
     found = dict(terms)
     _put_together(ring, found)
@@ -44,7 +45,7 @@ def merged(ring: Ring, terms: Terms, *, doubled: bool = True) -> Terms:
 
 
 def _put_together(ring: Ring, terms: Terms) -> None:
-    """Apply the rules that leave fewer terms until none does."""
+    """Apply the rules that reduce the number of terms until none does."""
     count = len(terms) + 1
     while len(terms) < count:
         count = len(terms)
@@ -56,7 +57,12 @@ def _put_together(ring: Ring, terms: Terms) -> None:
 
 
 def fewest(ring: Ring, terms: Terms) -> Terms:
-    """The same in the angles that leave fewest terms, put together."""
+    """The terms in the angles that leave fewest of them, collected.
+
+    Args:
+        ring: of the terms.
+        terms: with sines and cosines of angles.
+    """
     best = merged(ring, terms)
     present = dict(terms)
     end = ring.work + SEARCH
@@ -75,7 +81,12 @@ def fewest(ring: Ring, terms: Terms) -> Terms:
 
 
 def spread(ring: Ring, terms: Terms) -> Terms:
-    """Products of sines and cosines as sums of those of sums of angles: one at most in each term."""
+    """Products of sines and cosines written as sums: each term has one sine or cosine at most.
+
+    Args:
+        ring: of the terms.
+        terms: with sines and cosines of angles; returned unchanged if one is in a denominator.
+    """
     found: Terms = {}
     for term, k in terms.items():
         waves = _of_waves(ring, term)
@@ -96,11 +107,11 @@ def spread(ring: Ring, terms: Terms) -> Terms:
 def _times(
     parts: dict[tuple[str, Harmonic], Number], kind: str, a: Harmonic
 ) -> dict[tuple[str, Harmonic], Number]:
-    """A sum of sines and cosines times another one: 2 sin b cos a = sin(b + a) + sin(b - a), and so on."""
+    """A sum of sines and cosines times another one, by 2 sin b cos a = sin(b + a) + sin(b - a) etc."""
     found: dict[tuple[str, Harmonic], Number] = {}
     for (own, b), k in parts.items():
         new = COS if own == kind else SIN
-        # of cos b cos a both are positive, of sin b sin a that of the sum is not, of sin b cos a both are
+        # signs of sum, difference: cos cos (+, +), sin sin (-, +), sin b cos a (+, +), cos b sin a (+, -)
         signs = (
             (-1, 1) if (own, kind) == (SIN, SIN) else (1, -1 if (own, kind) == (COS, SIN) else 1)
         )
@@ -111,7 +122,13 @@ def _times(
 
 
 def harmonic_sum(a: Harmonic, b: Harmonic, sign: int = 1) -> Harmonic:
-    """The harmonic of a + b or a - b."""
+    """The harmonic of a + b, or of a - b.
+
+    Args:
+        a: the first sum of angles.
+        b: the second one.
+        sign: 1 to add it, -1 to subtract it.
+    """
     found = dict(a)
     for angle, times in b:
         found[angle] = found.get(angle, 0) + sign * times
@@ -119,7 +136,7 @@ def harmonic_sum(a: Harmonic, b: Harmonic, sign: int = 1) -> Harmonic:
 
 
 def _waves(ring: Ring, terms: Terms) -> list[Harmonic]:
-    """The angles whose sines or cosines stand in terms, in order of the ring."""
+    """The angles whose sines or cosines occur in terms, in the order of the ring."""
     present = dict.fromkeys(place for term in terms for place, _ in ring.exponents(term))
     found = {
         ring.generators[place].content: None
@@ -139,7 +156,7 @@ def _pair(ring: Ring, harmonic: Harmonic) -> tuple[int, int]:
 
 
 def _signed(ring: Ring, kind: str, harmonic: Harmonic) -> tuple[Number, int]:
-    """The term of a sine or cosine of any harmonic, its first angle made positive, and the sign."""
+    """Sign and term of a sine or cosine of any harmonic, with the first angle made positive."""
     if not harmonic:
         return (1, 0) if kind == COS else (0, 0)
     if harmonic[0][1] > 0:
@@ -155,7 +172,7 @@ def _same(a: Number, b: Number) -> bool:
 
 
 def _of_waves(ring: Ring, term: int) -> list[tuple[str, Harmonic, int]]:
-    """The sines and cosines in a term: which, of what angle, how often."""
+    """The sines and cosines in a term: kind, angle and exponent."""
     return [
         (kind, content, exponent)
         for place, exponent in ring.exponents(term)
@@ -165,7 +182,7 @@ def _of_waves(ring: Ring, term: int) -> list[tuple[str, Harmonic, int]]:
 
 
 def _complement(ring: Ring, terms: Terms, term: int) -> None:
-    """``1 - sin^2`` and ``1 - 2 sin^2``, where a term has the square."""
+    """Collect ``1 - sin^2`` or ``1 - 2 sin^2``, if a term contains the square."""
     for kind, harmonic, exponent in _of_waves(ring, term):
         if kind == COS or exponent < 2:
             continue
@@ -186,7 +203,7 @@ def _complement(ring: Ring, terms: Terms, term: int) -> None:
 
 
 def _sum(ring: Ring, terms: Terms, term: int) -> None:
-    """A product of sines and cosines of two angles that, with another, is one of their sum or difference."""
+    """Collect two products of sines and cosines that make one of the sum or difference of their angles."""
     waves = [wave for wave in _of_waves(ring, term) if wave[2] > 0]
     for kind_a, a, _ in waves:
         for kind_b, b, _ in waves:
@@ -215,7 +232,7 @@ def _sum(ring: Ring, terms: Terms, term: int) -> None:
 
 
 def _doubled(ring: Ring, terms: Terms, term: int) -> bool:
-    """``sin a cos a`` as ``sin(2a)/2``; whether a term has it."""
+    """Write ``sin a cos a`` as ``sin(2a)/2``; whether the term contains it."""
     k, new = terms[term], term
     waves = {(kind, harmonic): exponent for kind, harmonic, exponent in _of_waves(ring, term)}
     for (kind, harmonic), exponent in waves.items():

@@ -1,7 +1,8 @@
-"""The values of symbols at a point, exactly: sin pi = 0, cos(pi/6) = sqrt(3)/2, sqrt(h^2) = h where h > 0.
+"""Exact values of symbols at a point: sin π = 0, cos(π/6) = √3/2, √(h²) = h for h > 0.
 
-An algebra over the polynomials of a ring. What a function is worth sympy says; what it leaves as it is, such
-as sin(1/4) or pi itself, becomes a generator whose value is known at the points where forms are compared.
+An algebra over the polynomials of a ring. SymPy evaluates functions; those that it leaves unevaluated,
+such as sin(1/4), and constants such as π become generators with known values at the points where forms
+are compared.
 """
 
 from __future__ import annotations
@@ -14,14 +15,15 @@ import sympy
 from linegraph.algebra.sympy_scalars import OURS, RENAMED, Expr, number, power
 from linegraph.errors import ModelError
 from linegraph.ir.functions import ARITY, of_numbers
-from linegraph.symbolic.simplification.polynomial import ROOT, SYMBOL, Poly, frozen
+from linegraph.symbolic.simplification.generators import ROOT, SYMBOL
+from linegraph.symbolic.simplification.polynomial import Poly, frozen
 
 if TYPE_CHECKING:
     from linegraph.algebra.differentiation import Symbol
     from linegraph.symbolic.simplification import Simplifier
 
 CONSTANT = "constant"
-"""The argument of symbols that stand for a number or for what sympy leaves as it is."""
+"""The argument of symbols for numbers and expressions that SymPy leaves unevaluated."""
 
 PLAIN = ("sin", "cos")
 
@@ -30,17 +32,22 @@ class Exact:
     """An algebra (`algebra.protocol.Algebra`) of polynomials with exact values.
 
     Args:
-        simplifier: of whose ring; it writes what is asked of sympy.
+        simplifier: has the ring, and writes expressions for SymPy.
     """
 
     def __init__(self, simplifier: Simplifier) -> None:
-        """No value is known yet."""
+        """Start without constants."""
         self._simplifier = simplifier
         self._ring = simplifier.ring
         self._constants: dict[Expr, Symbol] = {}
 
     def symbol(self, argument: str, place: int | str | None = None) -> Poly:
-        """A symbol without a value."""
+        """A symbol without a value.
+
+        Args:
+            argument: the argument that it belongs to.
+            place: its index or name there.
+        """
         return self._ring.symbol(argument, place)
 
     def sin(self, x: Any) -> Poly:
@@ -52,11 +59,16 @@ class Exact:
         return self.function("cos", x)
 
     def sqrt(self, x: Any) -> Poly:
-        """The square root."""
+        """Square root, exact if SymPy can simplify it."""
         return self.function("sqrt", x)
 
     def function(self, name: str, *x: Any) -> Poly:
-        """Any function of `functions.ARITY`."""
+        """Any function of `functions.ARITY`.
+
+        Args:
+            name: of the function.
+            x: its arguments.
+        """
         given = [self._ring.poly(part) for part in x]
         numbers = [_number(part) for part in given]
         rounded = self._ring.inexact or any(isinstance(k, float) for k in numbers)
@@ -76,7 +88,8 @@ class Exact:
         if e.is_Symbol:
             return self._letter(e)
         if e.is_Rational or e.is_Float:
-            self._ring.inexact |= e.is_Float  # 1.0 is one, too: its sine is no letter
+            # 1.0 counts as a float too: its sine is a number, not a generator
+            self._ring.inexact |= e.is_Float
             return self._ring.poly(number(e))
         if e.is_Add or e.is_Mul:
             parts = [self.value(part) for part in e.args]
@@ -112,7 +125,7 @@ class Exact:
         return self._ring.symbol(*known)
 
     def _constant(self, e: Expr) -> Poly:
-        """What sympy leaves as it is, as a generator."""
+        """An expression that SymPy leaves unevaluated, as a generator."""
         if e not in self._constants:
             symbol = self._constants[e] = (CONSTANT, len(self._constants))
             for argument in sorted(e.free_symbols, key=str):
@@ -121,7 +134,7 @@ class Exact:
         return self._ring.symbol(*self._constants[e])
 
     def _tie(self, angle: Expr) -> None:
-        """Write 1 - sin^2 for the square of a cosine that sympy leaves as it is."""
+        """Replace the square of an unevaluated cosine by 1 - sin^2."""
         cosine, sine = sympy.cos(angle), sympy.sin(angle)
         if cosine in self._constants or (cosine.func, sine.func) != (sympy.cos, sympy.sin):
             return
@@ -129,7 +142,7 @@ class Exact:
         self._ring.replace_square(place, (1 - self._constant(sine) ** 2).terms)
 
     def _is_constant(self, x: Poly) -> bool:
-        """Whether sympy is to be asked: a number stands in it, or what sympy leaves as it is."""
+        """Whether SymPy must evaluate it: it contains a number, a root or an unevaluated expression."""
         return any(
             not term
             or any(
@@ -143,7 +156,7 @@ class Exact:
 
 
 def _number(x: Poly) -> float | Fraction | None:
-    """The number that a polynomial is; None of others."""
+    """The number that a polynomial equals; None for others."""
     if not x.terms:
         return Fraction(0)
     k = x.terms.get(0)

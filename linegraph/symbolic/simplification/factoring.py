@@ -1,11 +1,12 @@
-"""From terms to what a book prints: collected in rates, inertias grouped, common factors out.
+"""From terms to a textbook form: collected in rates, inertias grouped, common factors out.
 
-1. What stands with each product of rates, accelerations, inputs or multipliers is put together, and
+1. The coefficient of each product of rates, accelerations, inputs or multipliers is collected, and
 products with the same coefficient share it: m l sin b (2 a' b' + b'^2).
-2. Within a coefficient, what stands with each product of functions of angles is put together:
-(J + m l^2) sin^2 a.
-3. The factor that most terms share is taken out, and so on inwards. A short sum that is a product of sums
-is written as one.
+
+2. Within a coefficient, that of each product of functions of angles is collected: (J + m l^2) sin^2 a.
+
+3. The factor that most terms share is taken out, and so on recursively. A short sum that factors into
+sums is written as a product.
 """
 
 from __future__ import annotations
@@ -18,8 +19,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import sympy
 
 from linegraph.algebra.sympy_scalars import RENAMED, Expr
-from linegraph.symbolic.simplification.numbers import Terms, near, plain, readable, reciprocal
-from linegraph.symbolic.simplification.polynomial import (
+from linegraph.symbolic.simplification.generators import (
     COS,
     FUNCTION,
     ROOT,
@@ -27,46 +27,47 @@ from linegraph.symbolic.simplification.polynomial import (
     SYMBOL,
     Frozen,
     Harmonic,
-    Ring,
     unit,
 )
+from linegraph.symbolic.simplification.numbers import Terms, near, plain, readable, reciprocal
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from linegraph.algebra.differentiation import Symbol
     from linegraph.ir.dag import Number
+    from linegraph.symbolic.simplification.polynomial import Ring
 
 MOST_TERMS_AS_PRODUCT = 10
-"""Longer sums are not searched for a product of sums."""
+"""Longer sums are not factored into sums."""
 
 PARAMETERS = "p"
 MOVING = ("v", "a", "u", "lam")
 DIGITS = 12
-"""Sums with floats are proportional if their coefficients agree in so many digits."""
+"""Sums with floats are proportional if their coefficients agree in this number of digits."""
 
 
 class CommonFactor(NamedTuple):
-    """What terms share: a generator of the ring (`kernel` empty), or a sum of terms."""
+    """A factor of terms: a generator of the ring (with an empty `kernel`), or a sum of terms."""
 
     place: int
     kernel: Frozen
 
 
 class Term(NamedTuple):
-    """A number times powers of factors, ascending by place."""
+    """A number times powers of factors, in ascending order of place."""
 
     coefficient: Number
     factors: tuple[tuple[CommonFactor, int], ...]
 
 
 class SympyWriter:
-    """Writes the terms of a ring as sympy expressions.
+    """Writes the terms of a ring as SymPy expressions.
 
     Args:
         ring: of the terms.
-        symbol: the expression of a symbol, by its argument and place.
-        inner: how the polynomial inside a root, an inverse or a function is written.
+        symbol: returns the expression of a symbol, given its argument and place.
+        inner: writes the polynomial inside a root, an inverse or a function.
     """
 
     def __init__(
@@ -75,7 +76,7 @@ class SympyWriter:
         symbol: Callable[[Symbol], Expr],
         inner: Callable[[Terms], Expr] | None = None,
     ) -> None:
-        """Nothing is written yet; generators are written once."""
+        """Start without expressions; each generator is written once."""
         self.ring = ring
         self._symbol = symbol
         self._inner = inner or self.written
@@ -83,7 +84,7 @@ class SympyWriter:
         self._constants: dict[int, bool] = {}
 
     def written(self, terms: Terms) -> Expr:
-        """Collected and factored, the parameters that all terms share before all."""
+        """The terms collected and factored; parameters that all terms share come first."""
         outside = self._shared_parameters(terms)
         times = _scale(terms.values()) * _sign(terms.values(), ()) if outside else 1
         terms = {term - outside: near(k * reciprocal(times)) for term, k in terms.items()}
@@ -103,14 +104,14 @@ class SympyWriter:
         return sympy.Mul(self.expanded({outside: times}), whole)
 
     def _shared_parameters(self, terms: Terms) -> int:
-        """What of parameters stands in every term."""
+        """The powers of parameters that occur in every term."""
         if len(terms) < 2:
             return 0
         (common,) = self.ring.primitive(terms, clear=False)[0]
         return sum(unit(p, e) for p, e in self.ring.exponents(common) if self.constant(p))
 
     def _collected(self, coefficient: Terms, moving: Terms) -> Expr:
-        """One coefficient with all that it stands with."""
+        """One coefficient with all products that it multiplies."""
         if moving == {0: 1}:
             return self.nested(self.grouped(coefficient))
         inside = _scale(moving.values()) * _sign(moving.values(), coefficient.values())
@@ -122,7 +123,7 @@ class SympyWriter:
         return sympy.Mul(number(near(inside * outside)), self.nested(self.grouped(inner)), rates)
 
     def expanded(self, terms: Terms) -> Expr:
-        """A plain sum."""
+        """The terms as a plain sum."""
         return sympy.Add(*(self._product(term) for term in self._terms(terms)))
 
     # -- factors
@@ -147,7 +148,7 @@ class SympyWriter:
         return sympy.sqrt(inner) if kind == ROOT else 1 / inner
 
     def angle(self, harmonic: Harmonic) -> Expr:
-        """A sum of angles."""
+        """A sum of multiples of angles as an expression."""
         parts = [n * self._inner(dict(self.ring.angles[angle])) for angle, n in harmonic]
         return sympy.Add(*parts)
 
@@ -179,7 +180,7 @@ class SympyWriter:
         return kind == SYMBOL and content[0] in MOVING
 
     def _within(self, kind: str, content: Any) -> list[int]:
-        """The terms that stand inside a generator."""
+        """The terms inside a generator."""
         if kind in (SIN, COS):
             return [term for angle, _ in content for term, _ in self.ring.angles[angle]]
         inner = content[1] if kind == FUNCTION else (content,)
@@ -194,7 +195,7 @@ class SympyWriter:
         ]
 
     def grouped(self, terms: Terms) -> list[Term]:
-        """What stands with each product of rates and angles as one factor, where it is a sum."""
+        """Terms with the coefficient of each product of rates and angles as one factor, if it is a sum."""
         groups: dict[int, Terms] = {}
         for term, k in sorted(terms.items()):
             varying = sum(unit(p, e) for p, e in self.ring.exponents(term) if not self.constant(p))
@@ -240,7 +241,7 @@ class SympyWriter:
             rest = [term for term in terms if term not in alike]
             k = _content(alike)
             inside = self.nested([_divided(term, k, ()) for term in alike])
-            # sympy would multiply the sum out
+            # otherwise SymPy distributes the number over the sum
             whole = sympy.Mul(number(k), inside, evaluate=not inside.is_Add)
             return sympy.Add(whole, self.nested(rest))
         as_product = self._as_product(terms)
@@ -254,7 +255,7 @@ class SympyWriter:
         return sympy.Add(self.nested(having), self.nested(rest))
 
     def _alike(self, terms: Sequence[Term]) -> list[Term]:
-        """Terms with the same float as their number: all, or where no factor is shared the most."""
+        """Terms with the same float as coefficient: all, or the most if no factor is shared by more."""
         sizes: dict[Number, list[Term]] = {}
         for term in terms:
             if isinstance(term.coefficient, float):
@@ -265,7 +266,7 @@ class SympyWriter:
         return most
 
     def _most_shared(self, terms: Sequence[Term]) -> tuple[CommonFactor, int] | None:
-        """The power that most terms have; of equals a sum, then what varies, then the first."""
+        """The power that most terms have; among equals a sum, then a variable factor, then the first."""
         counts: dict[tuple[CommonFactor, int], int] = {}
         for term in terms:
             for power in term.factors:
@@ -316,14 +317,14 @@ class SympyWriter:
 
 
 def number(k: Number) -> Expr:
-    """A coefficient as sympy's number."""
+    """A coefficient as a SymPy number."""
     if isinstance(k, float):
         return sympy.Float(k)
     return sympy.Rational(k.numerator, k.denominator)
 
 
 def in_decimals(e: Expr) -> Expr:
-    """An expression with its fractions as a person would write them: what came of a float is one again."""
+    """An expression with readable numbers: fractions that came from floats become floats again."""
     fractions = {k: readable(Fraction(k.p, k.q)) for k in e.atoms(sympy.Rational)}
     return e.xreplace({k: sympy.Float(x) for k, x in fractions.items() if isinstance(x, float)})
 
@@ -337,7 +338,7 @@ def _size(k: Number) -> Number:
 
 
 def _denominator(numbers: Iterable[Number]) -> int:
-    """The least common denominator of what is exact."""
+    """The least common denominator of the exact numbers."""
     exact = [Fraction(k).denominator for k in numbers if not isinstance(k, float)]
     return reduce(lambda a, b: a * b // gcd(a, b), exact, 1)
 
@@ -353,7 +354,7 @@ def _common(terms: Sequence[Term]) -> tuple[tuple[CommonFactor, int], ...]:
 
 
 def _irreducible(terms: Sequence[Term], factor: CommonFactor) -> bool:
-    """Whether a sum without common factors is A x + B with A or B of one term: then it is no product."""
+    """Whether a sum is A x + B with A or B a single term; without common factors it is then irreducible."""
     exponents = [dict(term.factors).get(factor, 0) for term in terms]
     having = sum(e != 0 for e in exponents)
     return max(exponents) == 1 and (having == 1 or len(terms) - having == 1)
@@ -366,7 +367,7 @@ def _content(terms: Sequence[Term]) -> Number:
 
 
 def _scale(numbers: Iterable[Number]) -> Number:
-    """The largest number that all are whole multiples of; among floats the number that all are, or 1."""
+    """The largest number that divides all; among floats their common absolute value, or 1."""
     numbers = list(numbers)
     if any(isinstance(k, float) for k in numbers):
         alike = len(numbers) > 1 and len({_rounded(_size(k)) for k in numbers}) == 1
@@ -377,7 +378,7 @@ def _scale(numbers: Iterable[Number]) -> Number:
 
 
 def _sign(inside: Iterable[Number], outside: Iterable[Number]) -> int:
-    """The sign to take out of a sum, so that fewer signs are left before and in it."""
+    """The sign to take out of a sum so that fewer minus signs remain before and inside it."""
     inside, outside = list(inside), list(outside)
     within, without = sum(k < 0 for k in inside), sum(k < 0 for k in outside)
     turned_within, turned_without = len(inside) - within, len(outside) - without

@@ -1,4 +1,4 @@
-"""What calculating objects have come to know, and how they forget it again."""
+"""The state of objects that learn while they calculate, and how it is restored."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 
 class Memory:
-    """The attributes of some objects as they are now; lists and dicts by their entries.
+    """The present attributes of some objects; lists and dicts are copied.
 
     Example:
         >>> from linegraph.symbolic.simplification.polynomial import Ring
@@ -19,7 +19,7 @@ class Memory:
     """
 
     def __init__(self, *objects: Any) -> None:
-        """Keep them."""
+        """Copy the attributes of all objects."""
         self._kept = [
             (x, name, value, value.copy() if isinstance(value, (list, dict)) else value)
             for x in objects
@@ -27,7 +27,7 @@ class Memory:
         ]
 
     def restore(self) -> None:
-        """Give every attribute its value back; lists and dicts stay the objects that others hold."""
+        """Restore every attribute; lists and dicts stay the same objects, since others may hold them."""
         for x, name, value, kept in self._kept:
             if isinstance(value, list):
                 value[:] = kept

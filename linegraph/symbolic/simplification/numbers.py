@@ -1,4 +1,4 @@
-"""Coefficients: exact where they are whole or fractions, floats whose rounding is kept from making terms."""
+"""Coefficients: exact integers and fractions, and floats whose rounding must not create terms."""
 
 from __future__ import annotations
 
@@ -12,14 +12,20 @@ Terms: TypeAlias = "dict[int, Number]"
 """Coefficients by term."""
 
 ROUNDING = 1e-14
-"""A difference of floats this much smaller than they is rounding."""
+"""A sum of floats that is smaller than its parts by this factor is rounding."""
 
 WHOLE = 1e-12
-"""A quotient of floats this close to a whole number, relatively, is one."""
+"""Relative distance from an integer below which a quotient of floats is one."""
 
 
 def gather(terms: Terms, term: int, k: Number) -> None:
-    """Add a term to others; what is left of floats by rounding alone is nothing."""
+    """Add a term to others, in place; a remainder of floats that is only rounding is dropped.
+
+    Args:
+        terms: the other terms.
+        term: the exponents of the new one.
+        k: its coefficient.
+    """
     old = terms.get(term)
     if old is None:
         if k:
@@ -33,11 +39,11 @@ def gather(terms: Terms, term: int, k: Number) -> None:
 
 
 LONG = 2**40
-"""A fraction with a numerator or denominator beyond this is what floats leave, such as 1/2.4 in binary."""
+"""A fraction with a larger numerator or denominator came from floats, such as 1/2.4 in binary."""
 
 
 def readable(x: Number) -> Number:
-    """A number as a person would write it: what came of a float is a float again.
+    """A number as a person would write it: a fraction that came from a float is a float again.
 
     Example:
         >>> readable(Fraction(1, 3)), readable(1 / Fraction(2.4)), readable(Fraction(4, 2))
@@ -49,18 +55,18 @@ def readable(x: Number) -> Number:
 
 
 def plain(x: Number) -> Number:
-    """A number as an int where it is one."""
+    """A number as an int if it is an integer."""
     if isinstance(x, float):
         return int(x) if x.is_integer() and abs(x) < 1e15 else x
     return int(x) if x == int(x) else x
 
 
 def near(k: Number) -> Number:
-    """A float that rounding has moved off a whole number, as that."""
+    """A float as an int if only rounding separates it from one."""
     whole = round(k)
     return whole if isinstance(k, float) and whole and abs(k - whole) < WHOLE * abs(k) else plain(k)
 
 
 def reciprocal(k: Number) -> Number:
-    """``1/k``, exact where k is."""
+    """The reciprocal ``1/k``, exact if k is exact."""
     return 1 / k if isinstance(k, float) else plain(1 / Fraction(k))

@@ -1,4 +1,4 @@
-"""Any sympy expression in the closed form of derivations."""
+"""Any SymPy expression in the closed form of derivations."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ def simplify(
 ) -> Expr:
     """An expression or a matrix, as `Derivation` writes its closed forms.
 
-    Sums are multiplied out and put together again, sines of sums of angles too; what is not built of sums,
-    products, powers and the functions of `functions.ARITY` is left as it is. The result is compared with what
-    was given at random points to fifty digits.
+    Sums are multiplied out and collected again, sines of sums of angles too. Subexpressions that are
+    not sums, products, powers or functions of `functions.ARITY` are left as they are. The result is
+    compared with the given expression at random points to fifty digits.
 
     Args:
-        expression: a sympy expression or matrix.
+        expression: a SymPy expression or matrix.
         level: none, fast or full.
         rates: symbols and functions in whose products terms are collected.
-        budget: how many products of two terms may be taken.
-        progress: told what is being done.
+        budget: the number of products of two terms that may be formed.
+        progress: called with the current step.
 
     Raises:
         ModelError: it has too many terms.
@@ -81,7 +81,7 @@ def quotient(expression: Any) -> Expr:
     exact = sympy.nsimplify(whole, rational=True) if inexact else whole
     parts = [part.expand() for part in sympy.fraction(sympy.cancel(exact))]
     scale = sympy.Integer(1)
-    if inexact:  # numbers of the size that they had before denominators were cleared
+    if inexact:  # undo the scaling from clearing denominators
         scale /= max(abs(k) for k, _ in _terms(parts[1]))
     if 2 * sum(bool(k.is_negative) for k, _ in _terms(parts[1])) > len(_terms(parts[1])):
         scale = -scale
@@ -93,7 +93,7 @@ def quotient(expression: Any) -> Expr:
 
 
 def _terms(part: Expr) -> list[tuple[Expr, Expr]]:
-    """The numbers and the rests of a sum's terms."""
+    """The coefficients and the remaining factors of a sum's terms."""
     return [term.as_coeff_Mul() for term in sympy.Add.make_args(part)]
 
 
@@ -102,7 +102,7 @@ def _decimal(k: Expr, inexact: bool) -> Expr:
 
 
 def _atoms(e: Expr, known: set[Expr]) -> set[Expr]:
-    """What stays as it is: symbols, functions of time and whatever is not arithmetic."""
+    """Subexpressions that are left as they are: symbols, functions of time, anything not arithmetic."""
     if e in known or e.is_Symbol or e.is_NumberSymbol:
         return {e}
     if e.is_Number:

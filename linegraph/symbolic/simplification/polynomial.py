@@ -1,83 +1,52 @@
-"""Polynomials over symbols, sines and cosines: the algebra in which terms that are equal meet.
+"""Polynomials over symbols, sines and cosines: a normal form in which equal expressions are equal.
 
-An expression is a sum of terms, a term a number times powers of *generators*: symbols, the sine and the
-cosine of each angle, and what cannot be multiplied out (roots, quotients by sums, other functions of
-polynomials). With ``cos^2 = 1 - sin^2`` applied throughout, two polynomials in symbols and angles are equal
-exactly if they have the same terms. Sums of angles of coordinates are taken apart.
-
-The exponents of a term are the digits of one integer, so that multiplying terms is adding integers.
+An expression is a sum of terms, a term a number times powers of *generators*: symbols, the sine and
+cosine of each angle, and subexpressions that cannot be multiplied out (roots, quotients by sums, other
+functions). With ``cos^2 = 1 - sin^2`` applied throughout, two polynomials in symbols and angles are
+equal exactly if they have the same terms. Sums of angles of coordinates are expanded.
 """
 
 from __future__ import annotations
 
-import struct
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any
 
-from linegraph.ir.dag import Number
 from linegraph.ir.functions import of_numbers
+from linegraph.symbolic.simplification.generators import (
+    COS,
+    FUNCTION,
+    INVERSE,
+    ROOT,
+    SIN,
+    SYMBOL,
+    Frozen,
+    Generators,
+    Harmonic,
+    Swollen,
+    unit,
+)
 from linegraph.symbolic.simplification.numbers import Terms, gather, plain, readable, reciprocal
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from linegraph.algebra.differentiation import Symbol
-
-Harmonic: TypeAlias = tuple[tuple[int, int], ...]
-"""A sum of angles: (number of the angle, how many times it is taken), ascending."""
-
-SYMBOL, SIN, COS, ROOT, INVERSE, FUNCTION = "symbol", "sin", "cos", "root", "inverse", "function"
-
-BITS = 16
-ZERO_DIGIT = 1 << (BITS - 2)
-"""What is added to a digit so that exponents may be negative; they stay below it."""
+    from linegraph.ir.dag import Number
 
 MOST_ANGLES = 4
-"""Sines of longer sums are not taken apart."""
+"""Sines of longer sums are not expanded."""
 
 COORDINATES = "q"
 
 
-class Swollen(Exception):
-    """An expression has more terms than the budget allows; `problem` says it."""
-
-    problem = "has too many terms"
-
-
-class TooHigh(Swollen):
-    """A power is beyond what terms can hold."""
-
-    problem = f"has a power above {ZERO_DIGIT - 1}, too high"
-
-
-class Generator(NamedTuple):
-    """What terms are powers of.
-
-    Attributes:
-        kind: SYMBOL, SIN, COS, ROOT, INVERSE or FUNCTION.
-        content: a symbol's argument and place, an angle's `Harmonic`, a `Frozen` polynomial, or the name of a
-            function and its arguments.
-    """
-
-    kind: str
-    content: Any
-
-
-Frozen: TypeAlias = tuple[tuple[int, Number], ...]
-"""The terms of a polynomial, ascending."""
-
-
-class Ring:
-    """All polynomials that may meet; an `algebra.protocol.Algebra`.
+class Ring(Generators):
+    """All polynomials of one calculation; an `algebra.protocol.Algebra`.
 
     Args:
-        budget: how many products of two terms may be formed.
+        budget: the number of products of two terms that may be formed.
 
     Attributes:
-        generators: in order of first use.
-        angles: what each angle is, as a polynomial.
+        angles: each angle as a polynomial.
         waves: the terms that are sine and cosine of an angle.
         work: products of two terms formed so far.
-        inexact: whether a float has come in that is no whole number.
+        inexact: whether a float other than an integer has occurred.
 
     Example:
         >>> ring = Ring()
@@ -88,101 +57,57 @@ class Ring:
 
     def __init__(self, budget: float = float("inf")) -> None:
         """Start without generators."""
+        super().__init__()
         self.budget = budget
         self.work = 0
         self.inexact = False
-        self.generators: list[Generator] = []
         self.angles: list[Frozen] = []
         self.waves: dict[Harmonic, tuple[int, int]] = {}
-        self._places: dict[Generator, int] = {}
-        self._bias = 0
-        self._high = 0
-        self._watched = 0
-        self._squares: list[tuple[int, int, Terms]] = []
-        self._exponents: dict[int, tuple[tuple[int, int], ...]] = {}
-
-    # -- generators
-
-    def generator(self, kind: str, content: Any) -> int:
-        """The place of a generator, registered at first use."""
-        key = Generator(kind, content)
-        if key not in self._places:
-            place = self._places[key] = len(self.generators)
-            self.generators.append(key)
-            shift = BITS * place
-            self._bias |= ZERO_DIGIT << shift
-            self._high |= 1 << (shift + BITS - 1)
-            if kind in (COS, ROOT):
-                square: Terms = dict(content) if kind == ROOT else {0: 1}
-                if kind == COS:
-                    square[unit(self.generator(SIN, content), 2)] = -1
-                self.replace_square(place, square)
-        return self._places[key]
-
-    def normalise(self, quaternion: Sequence[Symbol]) -> None:
-        """Write 1 - x^2 - y^2 - z^2 for w^2 of a unit quaternion (x, y, z, w)."""
-        *others, last = (self.generator(SYMBOL, symbol) for symbol in quaternion)
-        square: Terms = {unit(place, 2): -1 for place in others}
-        self.replace_square(last, {0: 1} | square)
-
-    def replace_square(self, place: int, square: Terms) -> None:
-        """From now on write other terms for the square of a generator."""
-        shift = BITS * place
-        mask = (ZERO_DIGIT - 2) << shift
-        self._watched |= mask
-        self._squares.append((mask, shift, square))
-
-    def power(self, kind: str, content: Any, exponent: int = 1) -> Poly:
-        """A generator to a power."""
-        return Poly(self, {unit(self.generator(kind, content), exponent): 1})
-
-    def is_wave(self, place: int) -> bool:
-        """Whether a generator is a sine or a cosine."""
-        return self.generators[place].kind in (SIN, COS)
-
-    def exponents(self, term: int) -> tuple[tuple[int, int], ...]:
-        """The generators in a term, by place, and their exponents."""
-        found = self._exponents.get(term)
-        if found is None:
-            count = len(self.generators)
-            digits = (term + self._bias).to_bytes(BITS // 8 * count, "little")
-            found = tuple(
-                (place, digit - ZERO_DIGIT)
-                for place, digit in enumerate(struct.unpack(f"<{count}H", digits))
-                if digit != ZERO_DIGIT
-            )
-            self._exponents[term] = found
-        return found
-
-    def exponent(self, term: int, place: int) -> int:
-        """The exponent of one generator in a term."""
-        digit: int = (term + self._bias) >> (BITS * place) & (2**BITS - 1)
-        return digit - ZERO_DIGIT
 
     # -- an algebra
 
+    def power(self, kind: str, content: Any, exponent: int = 1) -> Poly:
+        """A power of a generator as a polynomial.
+
+        Args:
+            kind: see `Generator`.
+            content: see `Generator`.
+            exponent: may be negative.
+        """
+        return Poly(self, {unit(self.generator(kind, content), exponent): 1})
+
     def symbol(self, argument: str, place: int | str | None = None) -> Poly:
-        """A symbol as a polynomial."""
+        """A symbol as a polynomial.
+
+        Args:
+            argument: the argument that it belongs to.
+            place: its index or name there.
+        """
         return self.power(SYMBOL, (argument, place))
 
     def of_symbol(self, symbol: Symbol) -> Poly:
-        """The same, given its argument and place together."""
+        """A symbol, given as a pair of argument and place."""
         return self.symbol(*symbol)
 
     def sin(self, x: Poly | Number) -> Poly | Number:
-        """A sine; of coordinates' sums taken apart."""
+        """Sine of an angle in radians; sums of coordinates are expanded."""
         return self._wave(x)[1]
 
     def cos(self, x: Poly | Number) -> Poly | Number:
-        """A cosine; of coordinates' sums taken apart."""
+        """Cosine of an angle in radians; sums of coordinates are expanded."""
         return self._wave(x)[0]
 
     def sqrt(self, x: Poly | Number) -> Poly | Number:
-        """The square root."""
+        """Square root, as a generator unless x is a number."""
         return self.function("sqrt", x)
 
     def function(self, name: str, *x: Poly | Number) -> Poly | Number:
-        """Any function of `functions.ARITY`."""
+        """Any function of `functions.ARITY`.
+
+        Args:
+            name: of the function.
+            x: its arguments.
+        """
         if not any(isinstance(part, Poly) for part in x):
             return of_numbers(name, *(part for part in x if not isinstance(part, Poly)))
         if name in ("sin", "cos"):
@@ -193,7 +118,7 @@ class Ring:
         return self.power(FUNCTION, (name, given))
 
     def poly(self, x: Poly | Number) -> Poly:
-        """A number as a polynomial, a polynomial as it is."""
+        """A number as a polynomial; polynomials are returned unchanged."""
         if isinstance(x, Poly):
             return x
         x = readable(x)
@@ -219,7 +144,7 @@ class Ring:
         return cosine, sine
 
     def _parts(self, x: Poly) -> list[tuple[Any, Number]]:
-        """An angle as multiples of angles: those of coordinates, or itself."""
+        """An angle as a sum of multiples: of single coordinates if possible, else of itself."""
         whole = frozen(x)
         of_coordinates = all(
             isinstance(times, int) and abs(times) <= MOST_ANGLES and self._is_coordinate(term)
@@ -266,7 +191,11 @@ class Ring:
             raise Swollen
 
     def product(self, p: Terms, q: Terms) -> Terms:
-        """All products of a term of one with a term of the other, reduced.
+        """The product of two polynomials, with squares replaced.
+
+        Args:
+            p: the terms of one.
+            q: the terms of the other.
 
         Raises:
             Swollen: the budget is used up, or an exponent is too large.
@@ -286,31 +215,13 @@ class Ring:
                     gather(found, m, k1 * k2)
         return found
 
-    def reduced(self, term: int) -> Terms:
-        """A term with no square left that is something else: of a cosine, of a root.
-
-        Raises:
-            Swollen: an exponent is too large.
-        """
-        found: Terms = {}
-        pending: list[tuple[int, Number]] = [(term, 1)]
-        while pending:
-            term, k = pending.pop()
-            biased = term + self._bias
-            if biased < 0 or biased & self._high:
-                raise TooHigh
-            for mask, shift, square in self._squares:
-                # an exponent below zero has these bits, too
-                if biased & mask and (biased >> shift & (2**BITS - 1)) >= ZERO_DIGIT + 2:
-                    rest = term - (2 << shift)
-                    pending += [(rest + t, k * x) for t, x in square.items()]
-                    break
-            else:
-                gather(found, term, k)
-        return found
-
     def quotient(self, p: Poly, q: Poly) -> Poly:
-        """``p / q``; a sum in the denominator becomes a generator."""
+        """The quotient ``p / q``; a denominator that is a sum becomes a generator.
+
+        Args:
+            p: the numerator.
+            q: the denominator.
+        """
         if not q.terms:
             raise ZeroDivisionError("a quotient by zero")
         if len(q.terms) == 1:
@@ -324,11 +235,11 @@ class Ring:
         return p * Poly(self, {-term: reciprocal(k)}) * inverse
 
     def primitive(self, terms: Terms, *, clear: bool = True) -> tuple[Terms, Terms]:
-        """A common factor of all terms, of one term, and what is left: its first coefficient is 1.
+        """A common factor of all terms, as one term, and the rest, whose first coefficient is 1.
 
         Args:
             terms: of a polynomial that is not zero.
-            clear: whether nothing with a negative exponent is to be left.
+            clear: whether the rest may have no negative exponents.
         """
         rows = [dict(self.exponents(term)) for term in terms]
         least: dict[int, int] = {}
@@ -342,12 +253,17 @@ class Ring:
 
 
 class Poly:
-    """A polynomial: ``{term: coefficient}``, calculating as a number does."""
+    """A polynomial that calculates like a number.
+
+    Attributes:
+        ring: with its generators.
+        terms: ``{term: coefficient}``.
+    """
 
     __slots__ = ("ring", "terms")
 
     def __init__(self, ring: Ring, terms: Terms) -> None:
-        """Only a ring's functions make them."""
+        """Only functions of a ring make polynomials."""
         self.ring = ring
         self.terms = terms
 
@@ -388,11 +304,6 @@ class Poly:
         return found
 
 
-def unit(place: int, exponent: int = 1) -> int:
-    """The term that is a power of one generator."""
-    return exponent << (BITS * place) if exponent >= 0 else -(-exponent << (BITS * place))
-
-
 def frozen(x: Poly) -> Frozen:
-    """A polynomial's terms in ascending order: equal ones are equal."""
+    """A polynomial's terms in ascending order: equal polynomials give equal tuples."""
     return tuple(sorted(x.terms.items()))

@@ -1,7 +1,7 @@
-"""What a rewritten form is held against: the expression as derived, at random points, to fifty digits.
+"""Verification of rewritten forms: comparison with the derived expression at random points, to fifty digits.
 
-A DAG's node, the terms of a ring and a sympy expression are evaluated by three walks that share nothing but
-the values of the symbols.
+The node of a DAG, the terms of a ring and a SymPy expression are evaluated by three independent walks
+that share only the values of the symbols. An error in one rewrite cannot cancel in another.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from mpmath.ctx_mp import MPContext
 
 from linegraph.algebra.differentiation import Replay
 from linegraph.algebra.sympy_scalars import OURS
-from linegraph.symbolic.simplification.polynomial import COS, FUNCTION, ROOT, SIN, SYMBOL
+from linegraph.symbolic.simplification.generators import COS, FUNCTION, ROOT, SIN, SYMBOL
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -27,24 +27,32 @@ if TYPE_CHECKING:
 
 DIGITS = 50
 EXACT = 1e-40
-"""How far forms may differ, relative to the terms they are sums of, where all numbers are exact ..."""
+"""Greatest relative difference, compared with the terms of the sum, if all numbers are exact ..."""
 INEXACT = 1e-12
-"""... and where some are floats, whose sums are rounded."""
+"""... and if some are floats, whose sums are rounded."""
 
 OWN = {"abs": "fabs"}
-"""Functions that mpmath calls otherwise."""
+"""Functions with another name in mpmath."""
 
 
 class Precise:
     """The algebra of numbers with fifty digits."""
 
     def __init__(self) -> None:
-        """A context of its own: nobody's precision is changed."""
+        """Use a context of its own, so that no other precision changes."""
         self.context = MPContext()
         self.context.dps = DIGITS
 
     def symbol(self, argument: str, place: int | str | None = None) -> Scalar:
-        """There are none here; a `SamplePoint` has them."""
+        """Symbols have no values here, only at a `SamplePoint`.
+
+        Args:
+            argument: the argument that the symbol belongs to.
+            place: its index or name there.
+
+        Raises:
+            KeyError: in every case.
+        """
         raise KeyError(argument, place)
 
     def sin(self, x: Scalar) -> Scalar:
@@ -56,24 +64,29 @@ class Precise:
         return self.context.cos(x)
 
     def sqrt(self, x: Scalar) -> Scalar:
-        """The square root, complex where x is negative."""
+        """Square root, complex if x is negative."""
         return self.context.sqrt(x)
 
     def function(self, name: str, *x: Scalar) -> Scalar:
-        """Any function of `functions.ARITY`."""
+        """Any function of `functions.ARITY`.
+
+        Args:
+            name: of the function.
+            x: its arguments.
+        """
         if name in ("min", "max"):
             return (min if name == "min" else max)(x, key=lambda z: z.real)
         return getattr(self.context, OWN.get(name, name))(*x)
 
 
 class SamplePoint:
-    """Random values of all symbols, and what expressions are worth there.
+    """Random values of all symbols, and the values of expressions there.
 
     Args:
-        ring: whose terms are evaluated.
-        names: a symbol of the ring by the sympy symbol it is written as; filled while writing.
+        ring: of the terms that are evaluated.
+        names: symbols of the ring by the SymPy symbols that they are written as; filled while writing.
         seed: of the values.
-        units: symbols whose values are those of a unit vector.
+        units: groups of symbols whose values form a unit vector.
     """
 
     def __init__(
@@ -83,7 +96,7 @@ class SamplePoint:
         seed: int,
         units: Iterable[Sequence[Symbol]] = (),
     ) -> None:
-        """Values arise when they are asked for, each from its symbol's name alone."""
+        """Draw values on demand, each from the symbol's name alone: the order of use does not matter."""
         self._ring = ring
         self._names = names
         self._seed = seed
@@ -98,31 +111,36 @@ class SamplePoint:
             self._values |= {symbol: x / length for symbol, x in zip(unit, entries, strict=True)}
 
     def value(self, symbol: Symbol) -> Any:
-        """A symbol's value."""
+        """The value of a symbol."""
         if symbol not in self._values:
             draw = random.Random(f"{self._seed} {symbol}")
             self._values[symbol] = self._algebra.context.mpf(draw.randint(20, 150)) / 107
         return self._values[symbol]
 
     def define(self, symbol: Symbol, e: Expr) -> None:
-        """Give a symbol the value of an expression."""
+        """Set the value of a symbol to that of an expression.
+
+        Args:
+            symbol: its argument and place.
+            e: a SymPy expression.
+        """
         self._values[symbol] = self._of(e)
 
     def replay(self, symbol: Callable[[Symbol], Any]) -> Replay:
-        """Evaluates scalars of the DAG with other values of symbols."""
+        """A replay that evaluates scalars of the DAG with other values of symbols."""
         return Replay(self._algebra, symbol, self._algebra.context.convert)
 
     def node(self, x: Scalar) -> Any:
-        """What a scalar of the DAG is worth."""
+        """The value of a scalar of the DAG."""
         return self._replay(x)
 
     def terms(self, terms: Terms) -> tuple[Any, Any]:
-        """What a polynomial is worth, and the sum of its terms' sizes."""
+        """The value of a polynomial, and the sum of the sizes of its terms."""
         found = [self._term(term) * self._number(k) for term, k in terms.items()]
         return sum(found), sum(abs(x) for x in found)
 
     def expression(self, e: Expr) -> Any:
-        """What a sympy expression is worth."""
+        """The value of a SymPy expression."""
         if e not in self._known:
             self._known[e] = self._of(e)
         return self._known[e]

@@ -1,10 +1,11 @@
-"""Quotients of polynomials of a ring: linear equations solved without fractions, and common factors removed.
+"""Quotients of polynomials of a ring: fraction-free solution of linear equations, common factors removed.
 
     rows X = rights  ──cleared──→ polynomials ──eliminated──→ minors ──cancelled──→ X
 
-The elimination is Bareiss': every number in it is a minor of the matrix, so that each division comes out even
-and nothing grows beyond the answer. Generators are independent symbols to it; what ties them (``cos^2 = 1 -
-sin^2``, the square of a root) is put in once, in the result. That is right wherever the pivots do not vanish,
+The elimination is that of Bareiss: every intermediate is a minor of the matrix, so that each division
+is exact and nothing grows beyond the result; elimination with quotients would have to cancel at every
+step. Generators are treated as independent symbols; relations between them (``cos^2 = 1 - sin^2``, the
+square of a root) are applied once, to the result. This is correct wherever the pivots do not vanish,
 which is judged by their values at a random point.
 """
 
@@ -14,7 +15,8 @@ import math
 from collections import Counter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from linegraph.symbolic.simplification.polynomial import COS, ROOT, Poly, Ring, unit
+from linegraph.symbolic.simplification.generators import COS, ROOT, unit
+from linegraph.symbolic.simplification.polynomial import Poly, Ring
 from linegraph.symbolic.simplification.spaces import Element, Space
 
 if TYPE_CHECKING:
@@ -24,36 +26,36 @@ if TYPE_CHECKING:
     from linegraph.symbolic.simplification.proof import SamplePoint
 
 ZERO = 1e-25
-"""What is left of numbers with fifty digits, beside the terms of its sum, where it is zero ..."""
+"""Size of a number with fifty digits, relative to the terms of its sum, below which it is zero ..."""
 ROUNDED = 1e-9
-"""... and where some numbers are floats."""
+"""... and if some numbers are floats."""
 
 AGAIN = 4
-"""How often ties between generators are put in, which may leave a common factor."""
+"""Rounds of applying relations between generators, which may create a common factor."""
 
 
 class Quotient(NamedTuple):
-    """A polynomial over another, without common factors; coefficients are whole."""
+    """A polynomial over another, without common factors; coefficients are integers."""
 
     above: Terms
     below: Terms
 
 
 class Singular(Exception):
-    """Equations do not determine their unknowns; `rows` are those that are left."""
+    """Equations do not determine their unknowns; `rows` are the remaining ones."""
 
     def __init__(self, rows: Sequence[int]) -> None:
-        """Keep the rows."""
+        """Keep the remaining rows."""
         super().__init__(rows)
         self.rows = rows
 
 
 class Quotients:
-    """Solves linear equations between polynomials of a ring that may have quotients as coefficients.
+    """Solves linear equations between polynomials of a ring, which may contain quotients.
 
     Args:
         ring: of the polynomials.
-        point: whose values say what is zero.
+        point: decides by its values which entries are zero.
 
     Example:
         >>> ring = Ring()
@@ -67,18 +69,18 @@ class Quotients:
     """
 
     def __init__(self, ring: Ring, point: SamplePoint) -> None:
-        """Nothing is solved yet."""
+        """Keep the ring and the point."""
         self._ring = ring
         self._point = point
         self._known: dict[frozenset[Any], Quotient] = {}
 
     @property
     def zero(self) -> float:
-        """How small a sum is, beside its terms, to be zero."""
+        """The size, relative to the terms of a sum, below which it is zero."""
         return ROUNDED if self._ring.inexact else ZERO
 
     def vanishes(self, x: Poly) -> bool:
-        """Whether a polynomial is zero, by its value."""
+        """Whether a polynomial is zero, judged by its value at the point."""
         value, scale = self._point.terms(x.terms)
         return bool(abs(value) <= self.zero * scale)
 
@@ -96,13 +98,13 @@ class Quotients:
         return self._known[key]
 
     def poly(self, x: Quotient) -> Poly:
-        """A quotient as a polynomial, its denominator as one generator."""
+        """A quotient as a polynomial, with its denominator as one generator."""
         found = Poly(self._ring, x.above) / Poly(self._ring, x.below)
         self._known[frozenset(found.terms.items())] = x
         return found
 
     def shared(self, parts: Sequence[Terms]) -> Terms:
-        """The greatest common factor of polynomials, positive."""
+        """The greatest common factor of polynomials, with a positive sign."""
         polys = [Poly(self._ring, part) for part in parts]
         space = Space(self._ring, polys)
         found = None
@@ -113,7 +115,12 @@ class Quotients:
         return {} if found is None else space.terms(found)[0]
 
     def divided(self, terms: Terms, factor: Terms) -> Terms:
-        """A polynomial over a factor of it."""
+        """The quotient of a polynomial and one of its factors.
+
+        Args:
+            terms: the polynomial.
+            factor: divides it without remainder.
+        """
         if factor == {0: 1}:
             return terms
         above, below = self.of(Poly(self._ring, terms) / Poly(self._ring, factor))
@@ -127,9 +134,15 @@ class Quotients:
         through: Sequence[Sequence[Poly]] = (),
         direct: Sequence[Sequence[Poly]] = (),
     ) -> tuple[list[list[Poly]], list[list[Poly]]]:
-        """X of rows X = rights, and Y = through X + direct.
+        """X of ``rows X = rights``, and ``Y = through X + direct``.
 
-        Y comes from the same elimination, so that what X has in denominators meets there and cancels.
+        Y comes from the same elimination, so that denominators of X cancel in it.
+
+        Args:
+            rows: a square matrix.
+            rights: the right-hand sides, as columns of a matrix.
+            through: rows that multiply X.
+            direct: rows that are added to the products.
 
         Raises:
             Singular: the matrix is not regular.
@@ -155,10 +168,11 @@ class Quotients:
         return [self.poly(self._cancelled(space, x, below)) if x else zero for x in above]
 
     def _eliminated(self, rows: list[list[Element]], values: Any) -> list[tuple[int, int]]:
-        """Leave one entry in each row of the matrix; the places of these.
+        """Eliminate until each row of the matrix has one entry; the places of these.
 
-        The pivot is the shortest entry that is not zero, of equals the one that fills the least, then the
-        last: masses are eliminated from the leaves to the root. Among floats a large one goes before.
+        The pivot is the shortest non-zero entry, among equals the one with the least fill-in [Markowitz
+        1957], then the last: masses are eliminated from the leaves to the root. With floats, large
+        pivots take precedence over fill-in.
         """
         size = len(values)
         mirror = _Numbers(values, self.zero)
@@ -196,7 +210,7 @@ class Quotients:
         return found
 
     def _step(self, rows: list[list[Element]], row: int, column: int, before: Element) -> None:
-        """One step of Bareiss', in all other rows."""
+        """One step of Bareiss's elimination, in all other rows."""
         own, pivot = rows[row], rows[row][column]
         for i, other in enumerate(rows):
             if i == row:
@@ -209,7 +223,7 @@ class Quotients:
                 self._ring.spend(len(before) * sum(map(len, rows[i])))
 
     def _cancelled(self, space: Space, above: Element, below: Element) -> Quotient:
-        """Without common factors, what ties generators put in."""
+        """A quotient without common factors, with relations between generators applied."""
         if not above:
             return Quotient({}, {0: 1})
         for _ in range(AGAIN):
@@ -229,7 +243,7 @@ class Quotients:
         return Quotient(*turned)
 
     def _raised(self, parts: list[Terms]) -> list[Terms]:
-        """Roots and cosines that divide the denominator put above it, where that is no longer."""
+        """Move roots and cosines that divide the denominator to the numerator, if that gets no longer."""
         above, below = parts
         if not below:
             raise ZeroDivisionError("a quotient by zero")
@@ -247,26 +261,26 @@ class Quotients:
 
 
 class _Numbers:
-    """A matrix in numbers beside the one in letters, eliminated with it: which entries are zero."""
+    """A matrix in numbers, eliminated along with the one in letters, to decide which entries are zero."""
 
     def __init__(self, values: Any, zero: float) -> None:
-        """Start with values and the sizes of their terms."""
+        """Start from values with the sizes of their terms."""
         self._zero = zero
         self._rows = [
             [value if abs(value) > zero * scale else 0 for value, scale in row] for row in values
         ]
 
     def has(self, i: int, j: int) -> bool:
-        """Whether an entry is not zero."""
+        """Whether an entry is non-zero."""
         return bool(self._rows[i][j] != 0)
 
     def smallness(self, i: int, j: int) -> int:
-        """How many decimals an entry is smaller than the largest of its row."""
+        """The number of decimals by which an entry is smaller than the largest of its row."""
         largest = max(abs(x) for x in self._rows[i])
         return int(math.log10(largest / abs(self._rows[i][j])))
 
     def step(self, row: int, column: int, left: Iterable[int], columns: Iterable[int]) -> None:
-        """Subtract a row from the others that are left."""
+        """Subtract a row from the remaining ones."""
         own = self._rows[row]
         for i in left:
             other = self._rows[i]

@@ -1,6 +1,7 @@
-"""Polynomials of a ring as sympy's, in all generators at once: common factors are found there.
+"""Polynomials of a ring as SymPy polynomials in all generators, where common factors are found.
 
-Quotients are multiplied by their denominators on the way; what ties generators is put in on the way back.
+Quotients are multiplied by their denominators on the way there; relations between generators are
+applied on the way back.
 """
 
 from __future__ import annotations
@@ -14,23 +15,29 @@ from typing import TYPE_CHECKING, Any
 import sympy
 from sympy.polys.rings import PolyRing
 
+from linegraph.symbolic.simplification.generators import INVERSE, unit
 from linegraph.symbolic.simplification.numbers import Terms, gather
-from linegraph.symbolic.simplification.polynomial import INVERSE, Poly, Ring, unit
+from linegraph.symbolic.simplification.polynomial import Poly, Ring
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 Element: Any = Any
-"""A polynomial of sympy's, over the integers."""
+"""A SymPy polynomial over the integers."""
 
 PRIME = 2**61 - 1
 
 
 class Space:
-    """The polynomials of sympy's in all generators that some polynomials of a ring are made of."""
+    """The SymPy polynomials in all generators of some polynomials of a ring.
+
+    Args:
+        ring: of the polynomials.
+        given: the polynomials.
+    """
 
     def __init__(self, ring: Ring, given: Iterable[Poly]) -> None:
-        """Find the generators, those in denominators too."""
+        """Find the generators, including those in denominators."""
         self._ring = ring
         places: set[int] = set()
         pending = [term for x in given for term in x.terms]
@@ -53,11 +60,11 @@ class Space:
 
     @property
     def zero(self) -> Element:
-        """Zero among them."""
+        """The zero polynomial of the space."""
         return self._poly.zero
 
     def cleared(self, row: Sequence[Poly]) -> list[Element]:
-        """A row times whatever makes its entries polynomials with whole coefficients."""
+        """A row times the factor that makes its entries polynomials with integer coefficients."""
         need: dict[tuple[int, bool], int] = {}
         for x in row:
             for term in x.terms:
@@ -96,12 +103,12 @@ class Space:
         group: dict[tuple[int, ...], int],
         need: dict[tuple[int, bool], int],
     ) -> Element:
-        """Terms with the same inverses, times the denominators that these leave."""
+        """Terms with the same inverses, times the remaining denominators."""
         found = self._poly.from_dict(group)
         for place, exponent in inverses:
             above, below = self._inverse(place)
             up, down = need.get((place, False), 0), need.get((place, True), 0)
-            # the inverse is above/below
+            # inverse = above / below: a power of it multiplies by one and divides by the other
             for factor, power in ((below, up - exponent), (above, down + exponent)):
                 if power and factor != 1:
                     times = factor**power
@@ -118,7 +125,12 @@ class Space:
         return self._inverses[place]
 
     def cancelled(self, above: Element, below: Element) -> tuple[Element, Element]:
-        """Both without their common factor."""
+        """Numerator and denominator without their common factor.
+
+        Args:
+            above: the numerator.
+            below: the denominator.
+        """
         domain = self._poly.domain
         numbers = reduce(domain.gcd, [*above.values(), *below.values()])
         least = [min(exponents) for exponents in zip(*above, *below, strict=True)]
@@ -138,7 +150,7 @@ class Space:
         return above, below
 
     def terms(self, x: Element) -> tuple[Terms, bool]:
-        """As terms of the ring, and whether what ties generators changed them."""
+        """The terms in the ring, and whether relations between generators changed them."""
         found: Terms = {}
         changed = False
         for monomial, k in x.items():
@@ -150,10 +162,15 @@ class Space:
 
 
 def coprime(a: Element, b: Element) -> bool:
-    """Whether no factor with a variable is common: certain where true.
+    """Whether two polynomials have no common factor with a variable; True is certain.
 
-    Where all variables but one have values, a common factor stays one, unless the leading coefficient of what
-    it divides vanishes. So it is looked for in one variable at a time, modulo a prime.
+    If all variables but one get values, a common factor remains one unless its leading coefficient
+    vanishes. So it is looked for in one variable at a time, modulo a prime; a full gcd in all variables
+    is far slower.
+
+    Args:
+        a: a SymPy polynomial.
+        b: another one of the same space.
     """
     draw = random.Random(0)
     places = [draw.randrange(2, PRIME) for _ in a.ring.gens]
@@ -167,7 +184,7 @@ def coprime(a: Element, b: Element) -> bool:
 
 
 def _image(x: Element, kept: int, places: Sequence[int]) -> list[int]:
-    """The coefficients of the powers of one variable, modulo a prime; the highest is not zero."""
+    """The coefficients of the powers of one variable, modulo a prime; the highest is non-zero."""
     found = [0] * (x.degrees()[kept] + 1)
     for monomial, k in x.items():
         value = int(k)
@@ -204,5 +221,5 @@ def _trimmed(coefficients: list[int]) -> list[int]:
 
 
 def _exact(k: Any) -> Fraction:
-    """A coefficient as a fraction; a float as the decimal that it is written as."""
+    """A coefficient as a fraction; a float as its decimal representation."""
     return Fraction(repr(k)) if isinstance(k, float) else Fraction(k)
