@@ -285,7 +285,7 @@ class InverseScheme:
         return x, dot(pull, subtract(head.origin, tail.origin)) / x
 
     def across(self) -> dict[str, tuple[Vector, Vector]]:
-        """Velocity and angular velocity across every edge, in ground axes."""
+        """Velocity and angular velocity of the head less the tail, for every edge, in ground axes."""
         found: dict[str, tuple[Vector, Vector]] = {}
         for body in self._model.bodies:
             center = self.center(body)
