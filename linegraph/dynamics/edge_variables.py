@@ -74,7 +74,7 @@ class InverseScheme:
         self._known: dict[str, GroundFrame] = {}
         self._laws = ForceLaws(chords, acceleration)
 
-    # -- where things are
+    # -- places and motion
 
     def terminal(self, name: str) -> GroundFrame:
         """Motion of a terminal or a mass centre, in ground axes."""
@@ -102,7 +102,7 @@ class InverseScheme:
     def _vector(self, a: Vector) -> Vector:
         return (self._resolve(a[0]), self._resolve(a[1]), self._resolve(a[2]))
 
-    # -- what acts
+    # -- applied forces
 
     @cached_property
     def joints(self) -> dict[str, Wrench]:

@@ -68,7 +68,7 @@ class StateEquations:
         self._shortest = shortest
         self._solution = solution
 
-    # -- what moves
+    # -- kinematics
 
     @cached_property
     def state(self) -> TreeState:
