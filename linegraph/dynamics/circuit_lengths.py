@@ -174,6 +174,7 @@ def _longest(algebra: Algebra, circuits: Sequence[_Circuit]) -> Scalar:
     longest: Scalar = 0
     for circuit in circuits:
         parts = [*(x for arm in circuit.arms for x in arm), *circuit.own]
+        # sums of absolute components: at least the Euclidean length, without square roots to emit
         length = sum((algebra.function("abs", x) for x in parts), start=0)
         longest = length if longest == 0 else algebra.function("max", longest, length)
     return longest

@@ -74,7 +74,7 @@ class InverseScheme:
         self._known: dict[str, GroundFrame] = {}
         self._laws = ForceLaws(chords, acceleration)
 
-    # -- where things are
+    # -- places and motion
 
     def terminal(self, name: str) -> GroundFrame:
         """Motion of a terminal or a mass centre, in ground axes."""
@@ -102,7 +102,7 @@ class InverseScheme:
     def _vector(self, a: Vector) -> Vector:
         return (self._resolve(a[0]), self._resolve(a[1]), self._resolve(a[2]))
 
-    # -- what acts
+    # -- applied forces
 
     @cached_property
     def joints(self) -> dict[str, Wrench]:
@@ -285,7 +285,7 @@ class InverseScheme:
         return x, dot(pull, subtract(head.origin, tail.origin)) / x
 
     def across(self) -> dict[str, tuple[Vector, Vector]]:
-        """Velocity and angular velocity across every edge, in ground axes."""
+        """Velocity and angular velocity of the head less the tail, for every edge, in ground axes."""
         found: dict[str, tuple[Vector, Vector]] = {}
         for body in self._model.bodies:
             center = self.center(body)

@@ -68,7 +68,7 @@ class StateEquations:
         self._shortest = shortest
         self._solution = solution
 
-    # -- what moves
+    # -- kinematics
 
     @cached_property
     def state(self) -> TreeState:
@@ -107,7 +107,7 @@ class StateEquations:
 
     @cached_property
     def bias(self) -> list[Scalar]:
-        """h: gravity, Coriolis and centrifugal forces, less all applied forces that no input drives."""
+        """h, on the left of M v̇ + h = Q: Coriolis, centrifugal and gravity terms less passive forces."""
         return orthogonality.inverse_dynamics(self.working, None, self.rehoused(self.passive))
 
     def inverse_dynamics(self, a: Sequence[Scalar]) -> list[Scalar]:

@@ -73,7 +73,7 @@ class ForceLaws:
         values = ChainMap(names, values) if names else values
         return resolver(self._algebra, values)(value)
 
-    # -- where things are
+    # -- places and motion
 
     def terminal(self, terminal: str) -> tuple[int, GroundFrame]:
         """A terminal's link, -1 for ground, and its motion in ground axes."""
@@ -110,7 +110,7 @@ class ForceLaws:
         """An element's coordinate (rad or m) or length (m)."""
         return self._line(element)[0] if element.joint is None else self.moved(element.joint)[0]
 
-    # -- what acts
+    # -- applied forces
 
     def _through(self, element: Element, x: Scalar, v: Scalar) -> Scalar:
         """An element's through variable; for an edge of a network, the network's."""
@@ -146,7 +146,7 @@ class ForceLaws:
             x, _, v = self._line(element)
         return self._through(element, x, v) * v
 
-    # -- how the edges of networks move
+    # -- motion of network edges
 
     def motion(self, port: str) -> EdgeMotion:
         """Displacement, rate and acceleration of a network's edge in mechanics."""

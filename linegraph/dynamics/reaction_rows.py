@@ -82,6 +82,7 @@ def _upright(axis: int, tail: Pose, head: Pose) -> ReactionRow:
     """The head's z must be parallel to the tail's and of the same sense."""
     x, y, z = transpose(tail.rotation)
     leaning = transpose(head.rotation)[2]
+    # 2 sin / (1 + cos) = 2 tan(angle / 2): slope 1 at zero and, unlike the sine, no root at half a turn
     lean = -dot(y, leaning) if axis == 0 else dot(x, leaning)
     return ReactionRow(2 * lean / (1 + dot(z, leaning)), ZERO, (x, y)[axis])
 
@@ -90,6 +91,7 @@ def _unturned(axis: int, tail: Pose, head: Pose) -> ReactionRow:
     """No relative rotation: component of the rotation vector of length 2 tan(angle / 2)."""
     a, b = transpose(tail.rotation), transpose(head.rotation)
     j, k = (axis + 1) % 3, (axis + 2) % 3
+    # 1 + trace = 2 (1 + cos): as in `_upright`, the sine alone would also vanish at half a turn
     cosines = 1 + (dot(a[0], b[0]) + dot(a[1], b[1]) + dot(a[2], b[2]))
     return ReactionRow(2 * (dot(a[k], b[j]) - dot(a[j], b[k])) / cosines, ZERO, a[axis])
 

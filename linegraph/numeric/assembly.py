@@ -132,6 +132,7 @@ def saddle(
     rows = numpy.zeros((n + m, n + m))
     rows[:n, :n] = M
     rows[n:, :n] = numpy.array(J, float).reshape(m, n)
+    # -Jᵀ, so that λ has the sign of M v̇ = right + Jᵀ λ
     rows[:n, n:] = -rows[n:, :n].T
     found = numpy.linalg.lstsq(rows, numpy.array([*right, *bias], float), rcond=1e-11)[0]
     return found[:n].tolist(), found[n:].tolist()
@@ -151,6 +152,7 @@ class _Judgement:
     def of(self, q: list[float]) -> Assembly:
         """The assembly at a position, with the constraints judged around it."""
         np = self.np
+        # three positions: at a special one, such as a stretched linkage, the rank is lower than elsewhere
         places = [q, *(x for _ in range(2) if (x := self.search.beside(q)) is not None)]
         best = max(self._rank_at(place) for place in places)
         at = next(place for place in places if self._rank_at(place) == best)
@@ -158,6 +160,7 @@ class _Judgement:
         self._require_decided(J, best)
         rows, columns = J.shape
         left = np.linalg.svd(J)[0][:, best:] if rows and columns else np.zeros((rows, 0))
+        # `left` spans the null space of Jᵀ, the self-stresses: λ_k is unique if none has an entry there
         unique = [bool(np.abs(left[k]).max(initial=0.0) < 1e-6) for k in range(rows)]
         self._require_consistent(at, J, left)
         independent = self._independent(J, best)
@@ -203,6 +206,7 @@ class _Judgement:
         for t in (self.numeric.t, self.numeric.t + 0.37):
             numeric = self.numeric.at_time(t)
             rates = -self.search.rates(q, v, numeric)
+            # dependent rows need dependent rates; at two times, since rates may agree by chance at one
             amiss = np.abs(left.T @ rates)
             if amiss.max(initial=0.0) > 1e-6 * np.abs(rates).max(initial=0.0):
                 worst = left[:, int(amiss.argmax())]

@@ -172,6 +172,7 @@ class Search:
             step = -least(self.jacobian(q)[self.sought], phi)
             largest = float(np.abs(step).max(initial=0.0))
             step *= min(1.0, LARGEST_STEP / max(largest, 1e-300))
+            # far from a solution a full Newton step may enlarge the gaps: halve it until they shrink
             for _ in range(12):
                 moved = self._moved(q, step)
                 ahead = self._position(moved)

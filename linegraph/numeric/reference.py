@@ -103,7 +103,7 @@ class Numeric:
         return self.at(q, v).networks
 
     def bias(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
-        """Bias h(q, v): generalised forces at v̇ = 0 (N m or N).
+        """Bias h(q, v): generalised forces for v̇ = 0, gravity and passive forces included (N m or N).
 
         Args:
             q: the coordinates.

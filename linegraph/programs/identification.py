@@ -187,7 +187,7 @@ class _Split:
             values += [part[axis.joint] for part in found]
         return values
 
-    # -- what is no parameter
+    # -- the remainder
 
     def rest(self) -> list[Scalar]:
         """The part of τ from springs, loads, networks and other elements."""

@@ -104,7 +104,7 @@ class AtState:
         size = self._sizes(x)
         return all(abs(n(x)) <= n.zero * n(size) for n in self._numbers)
 
-    # -- what must hold
+    # -- conditions
 
     def require_kept(self) -> None:
         """Refuse a state that violates constraints or does not solve the algebraic loop of a network.
@@ -171,7 +171,7 @@ class AtState:
             )
             raise ModelError(WHO, problem) from None
 
-    # -- what is asked
+    # -- results
 
     def matrices(self, slopes: Slopes, *, moving: bool) -> tuple[Rows, Rows]:
         """The rows of (A B) and of (C D), with B and D for all inputs.

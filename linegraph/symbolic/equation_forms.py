@@ -261,7 +261,7 @@ class EquationForms:
         entries = self.simplifier.all([*linear, *angular], what)
         return sympy.Matrix(entries[:3]), sympy.Matrix(entries[3:])
 
-    # -- what they are made of
+    # -- sources
 
     @cached_property
     def _observed(self) -> dict[str, Scalar]:

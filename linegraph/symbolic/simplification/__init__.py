@@ -146,7 +146,7 @@ class Simplifier:
                 raise ModelError(what, problem) from None
         return found
 
-    # -- what others calculate with
+    # -- access for other calculations
 
     def twin(self) -> Simplifier:
         """Another simplifier with the same settings and an empty ring."""

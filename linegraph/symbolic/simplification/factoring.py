@@ -129,7 +129,7 @@ class SympyWriter:
     # -- factors
 
     def generator(self, place: int) -> Expr:
-        """A generator as an expression."""
+        """A generator as an expression, written once."""
         if place not in self._known:
             kind, content = self.ring.generators[place]
             self._known[place] = self._of(kind, content)
