@@ -281,39 +281,55 @@ class SympyWriter:
         return min(shared, key=rank) if shared else None
 
     def _as_product(self, terms: Sequence[Term]) -> Expr | None:
-        """A short sum as a product of sums."""
-        if not 3 <= len(terms) <= MOST_TERMS_AS_PRODUCT:
+        """A short sum as a product of sums; None if it has no factors, or may not be worth the search."""
+        found = factor_list(terms) if worth_factoring(terms) else None
+        if found is None:
             return None
-        if any(isinstance(term.coefficient, float) for term in terms):
-            return None
-        factors = list(dict.fromkeys(f for term in terms for f, _ in term.factors))
-        if any(e < 0 for term in terms for _, e in term.factors):
-            return None
-        if not factors or any(_irreducible(terms, factor) for factor in factors):
-            return None
-        places = {factor: n for n, factor in enumerate(factors)}
-        denominator = _denominator(term.coefficient for term in terms)
-        rows: dict[tuple[int, ...], int] = {}
-        for term in terms:
-            row = [0] * len(factors)
-            for factor, exponent in term.factors:
-                row[places[factor]] = exponent
-            rows[tuple(row)] = int(term.coefficient * denominator)
-        poly = sympy.Poly.from_dict(rows, *sympy.symbols(f"x:{len(factors)}"))
-        content, parts = poly.factor_list()
-        if len(parts) == 1 and parts[0][1] == 1:
-            return None
-        found = [sympy.Rational(content, denominator) if denominator != 1 else content]
-        for part, exponent in parts:
-            inner = [
-                Term(int(k), tuple((factors[n], e) for n, e in enumerate(row) if e))
-                for row, k in part.terms()
-            ]
-            found.append(self.nested(inner) ** exponent)
-        return sympy.Mul(*found)
+        content, parts = found
+        return sympy.Mul(content, *(self.nested(part) ** exponent for part, exponent in parts))
 
     def _product(self, term: Term) -> Expr:
         return sympy.Mul(number(term.coefficient), *(self._factor(f) ** e for f, e in term.factors))
+
+
+def worth_factoring(terms: Sequence[Term]) -> bool:
+    """Whether a sum is short, exact and polynomial, and no factor alone shows that it is irreducible."""
+    if not 3 <= len(terms) <= MOST_TERMS_AS_PRODUCT:
+        return False
+    if any(isinstance(term.coefficient, float) for term in terms):
+        return False
+    if any(exponent < 0 for term in terms for _, exponent in term.factors):
+        return False
+    factors = {factor for term in terms for factor, _ in term.factors}
+    return bool(factors) and not any(_irreducible(terms, factor) for factor in factors)
+
+
+def factor_list(terms: Sequence[Term]) -> tuple[Expr, list[tuple[list[Term], int]]] | None:
+    """The factors of a sum by `sympy.Poly.factor_list`: content, and sums with their exponents.
+
+    None if the sum is irreducible.
+    """
+    factors = list(dict.fromkeys(f for term in terms for f, _ in term.factors))
+    places = {factor: n for n, factor in enumerate(factors)}
+    denominator = _denominator(term.coefficient for term in terms)
+    rows: dict[tuple[int, ...], int] = {}
+    for term in terms:
+        row = [0] * len(factors)
+        for factor, exponent in term.factors:
+            row[places[factor]] = exponent
+        rows[tuple(row)] = int(term.coefficient * denominator)
+    poly = sympy.Poly.from_dict(rows, *sympy.symbols(f"x:{len(factors)}"))
+    content, parts = poly.factor_list()
+    if len(parts) == 1 and parts[0][1] == 1:
+        return None
+    found = []
+    for part, exponent in parts:
+        inner = [
+            Term(int(k), tuple((factors[n], e) for n, e in enumerate(row) if e))
+            for row, k in part.terms()
+        ]
+        found.append((inner, exponent))
+    return sympy.Rational(content, denominator) if denominator != 1 else content, found
 
 
 def number(k: Number) -> Expr:
