@@ -17,7 +17,7 @@ def size_of(n: int, r: Reals) -> float:
         size = abs(r[i])
         # a NaN is taken for the largest, so that nothing hides it afterwards
         if not size <= largest:
-            largest = size if size < infinity else infinity
+            largest = min(infinity, size)
     return largest
 
 
@@ -28,7 +28,7 @@ def largest_of(n: int, r: Reals, size: Reals) -> float:
         part = ratio(abs(r[i]), size[i])
         # a NaN is taken for the largest, so that nothing hides it afterwards
         if not part <= largest:
-            largest = part if part < infinity else infinity
+            largest = min(infinity, part)
     return largest
 
 
