@@ -207,8 +207,7 @@ class _ProcedureReader:
             case ast.Assign(targets=[target]):
                 yield self.assignment(node, target)
             case ast.AugAssign(op=operator) if type(operator) in _OPERATORS:
-                place = self.target(node.target)
-                yield Assign(place, _OPERATORS[type(operator)], self.of.expression(node.value))
+                yield self.assigned(node, node.target, _OPERATORS[type(operator)], node.value)
             case ast.For(target=ast.Name(id=name), iter=ast.Call() as span, orelse=[]):
                 yield self.loop(node, name, span)
             case ast.While(orelse=[]):
@@ -262,10 +261,16 @@ class _ProcedureReader:
             self.text.refuse(node, "only variables and entries of arrays are assigned")
         return found
 
+    def assigned(self, node: ast.stmt, target: ast.expr, operator: str, value: ast.expr) -> Assign:
+        """What was declared gets a value of its own kind."""
+        place, found = self.target(target), self.of.expression(value)
+        self.of.alike(node, place, found)
+        return Assign(place, operator, found)
+
     def assignment(self, node: ast.Assign, target: ast.expr) -> Statement:
         """An assignment, or what declares a name."""
         if not isinstance(target, ast.Name) or self.scope.knows(target.id):
-            return Assign(self.target(target), "", self.of.expression(node.value))
+            return self.assigned(node, target, "", node.value)
         name = target.id
         match node.value:
             case ast.Call(func=ast.Name(id="reals" | "ints" as word), args=[size]):

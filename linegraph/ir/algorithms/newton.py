@@ -45,7 +45,8 @@ LEVEL_GAP = 1e-9
 
 MISSED = 1e-3
 MOST_MISSED = 3
-"""A level is missed if more than this part of its residual is left; so many in turn end the search."""
+"""A level is missed if more than this part of its residual is left, and that is more than rounding; so many
+in turn end the search."""
 
 PROBE_EASE = 1e-8
 PROBE = 1e-6
@@ -148,7 +149,7 @@ def descend(module: ModuleAtState, series: float, parallel: float, at: Reals) ->
             gap = after
             solved = is_rounding(N, r, s)
     if eased:
-        return gap <= MISSED * start
+        return solved or gap <= MISSED * start
     return gap < infinity and (solved or not gap > 0.0)
 
 
