@@ -167,7 +167,7 @@ def accelerations_differ(
     That is a fraction of `size` and of the largest multiplier, at least of `least`; more than a tenth is
     never accepted. a_on and pure_on become the differences.
     """
-    bound = min(0.1, within)
+    bound = within if within < 0.1 else 0.1
     force = least
     for i in range(module.NC):
         force = larger(force, abs(pure[i]))

@@ -14,8 +14,8 @@ def eliminate(m: int, n: int, most: int, A: Reals, rows: Ints, columns: Ints, le
     The rank is `most` at most, and entries up to `least` are zero. rows and columns say where row i and
     column j of P A Q come from. A should hold pure numbers, so that pivots can be told from rounding.
     """
-    side = min(n, m)
-    last = min(side, most)
+    side = m if m < n else n
+    last = most if most < side else side
     for i in range(m):
         rows[i] = i
     for j in range(n):

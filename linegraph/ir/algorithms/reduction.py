@@ -143,7 +143,7 @@ def differ(
     NI = module.NI
     SIDES = NI + 1
     own = module.w_at
-    bound = min(0.1, within)
+    bound = within if within < 0.1 else 0.1
     for k in range(SIDES):
         given = 1.0
         largest = 0.01 * most * most

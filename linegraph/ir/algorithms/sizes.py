@@ -17,7 +17,7 @@ def size_of(n: int, r: Reals) -> float:
         size = abs(r[i])
         # a NaN is taken for the largest, so that nothing hides it afterwards
         if not size <= largest:
-            largest = min(infinity, size)
+            largest = size if size < infinity else infinity
     return largest
 
 
@@ -28,7 +28,7 @@ def largest_of(n: int, r: Reals, size: Reals) -> float:
         part = ratio(abs(r[i]), size[i])
         # a NaN is taken for the largest, so that nothing hides it afterwards
         if not part <= largest:
-            largest = min(infinity, part)
+            largest = part if part < infinity else infinity
     return largest
 
 
