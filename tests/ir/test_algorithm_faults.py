@@ -1,7 +1,7 @@
 """Faults in algorithms: a wrong sign, index or operator in one line is seen by the tests of algorithms.
 
 A fault that is no statement any more is seen by the reader. Any other one is put into the running function
-itself, so that all that call it have it; then the tests of algorithms run until one fails. Forty faults by
+itself, so that all that call it have it; then the tests of algorithms run until one fails. A hundred
 default, all with ``--all-forms``.
 """
 
@@ -46,7 +46,7 @@ TESTS = (
     test_algorithms_of_a_particle,
     test_network_newton,
 )
-FEW = 40
+FEW = 150
 SWAPPED = {
     ast.Add: ast.Sub,
     ast.Sub: ast.Add,
