@@ -119,7 +119,7 @@ class _CProcedure:
         if len(about) == 1:
             remark = [f"/* {declare.escape(about[0])} */"]
         head = "\n".join([*remark, *wrapped(text, WIDTH)])
-        return Definition(name, head, lines, self.frame)
+        return Definition(name, head, lines, self.frame, self.routine.name if self.routine else "")
 
     def body(self, head: str, name: str) -> Definition:
         """The function that does the work of the routine."""

@@ -31,7 +31,7 @@ def table(
     """
     rows: list[tuple[str, ...]] = [("function", *_HEADINGS)]
     for program in module.programs:
-        own = [x for x in functions if _is_part(x.name, program.name)]
+        own = [x for x in functions if program.name in (x.of, _whole(x.name))]
         variables = sum(x.frame.named for x in own)
         lines = sum(x.head.count("\n") + len(x.lines) + 3 for x in own)
         numbers = (variables, bytes_of[program.name], lines)
@@ -54,11 +54,11 @@ def table(
     return found
 
 
-def _is_part(part: str, name: str) -> bool:
-    """Whether a function is one of a program, or does some of its work."""
+def _whole(part: str) -> str:
+    """The name of the function that a part does some of the work of."""
     own = part.removesuffix(declare.CORE)
     stem, _, place = own.rpartition("_part")
-    return name in (own, stem if place.isdigit() else own)
+    return stem if place.isdigit() else own
 
 
 def _operations(program: Program | Routine) -> tuple[str, ...]:

@@ -56,12 +56,17 @@ class StackFrame:
 
 
 class Definition(NamedTuple):
-    """A function: its name after that of the module, its head, the lines between its braces, its record."""
+    """A function: its name after that of the module, its head, the lines between its braces, its record.
+
+    Attributes:
+        of: the emitted function that it belongs to, where its name does not say that.
+    """
 
     name: str
     head: str
     lines: list[str]
     frame: StackFrame
+    of: str = ""
 
 
 def statements(lines: Iterable[str]) -> int:

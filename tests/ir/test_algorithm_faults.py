@@ -1,7 +1,7 @@
 """Faults in algorithms: a wrong sign, index or operator in one line is seen by the tests of algorithms.
 
 A fault that is no statement any more is seen by the reader. Any other one is put into the running function
-itself, so that all that call it have it; then the tests of algorithms run until one fails. Forty faults by
+itself, so that all that call it have it; then the tests of algorithms run until one fails. A hundred
 default, all with ``--all-forms``.
 """
 
@@ -24,6 +24,7 @@ from linegraph.ir.reading import ALGORITHMS, WHERE
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "networks"))
 
+import test_algorithm_details
 import test_algorithm_newton
 import test_algorithms
 import test_algorithms_of_a_bead
@@ -38,13 +39,14 @@ MODULES = sorted(
     {*ALGORITHMS.values(), "elimination", "sizes", "constrained", "determined", "beside"}
 )
 TESTS = (
+    test_algorithm_details,
     test_algorithm_newton,
     test_algorithms,
     test_algorithms_of_a_bead,
     test_algorithms_of_a_particle,
     test_network_newton,
 )
-FEW = 40
+FEW = 150
 SWAPPED = {
     ast.Add: ast.Sub,
     ast.Sub: ast.Add,
@@ -61,7 +63,44 @@ SWAPPED = {
 }
 INDICES = {"i": "j", "j": "i", "k": "i"}
 
-HARMLESS: dict[str, str] = {}
+JUDGED = (
+    "result = constrained(*(module, NC, module.RANK, True, small.slack, most * most, M, f, J, gam, "
+    "of_phi, of_v, a_on), *(True, lam_on, pure_on, margin))"
+)
+FINITE = (
+    "if too_large(NV * WIDTH, slopes_f) + too_large(NC * WIDTH, slopes_gam) + "
+    "too_large(NC * NT, slopes_rates) + too_large(NT * NT, drift) > 0:"
+)
+LATER = "the equations of a column are refused with the same status"
+SAME_ERROR = "a state as far off on the same side tells the same error"
+HARMLESS = {
+    "move: at[i] += slope[i]  ->  at[i] -= slope[i]": SAME_ERROR,
+    "state_beside: v_on[i] = v[i] + step[i]  ->  v_on[i] = v[i] - step[i]": SAME_ERROR,
+    "least_multipliers: for i in range(rank - 1, -1, -1):  ->  for i in range(rank + 1, -1, -1):": (
+        "the inner loop is empty for the rows beyond"
+    ),
+    "largest_force: total += M[i * NV + j] * a[j]  ->  total -= M[i * NV + j] * a[j]": (
+        "only its size is used"
+    ),
+    "eliminate: side = m if m < n else n  ->  side = m if m > n else n": (
+        "beyond the smaller side there are no entries, and so no pivot"
+    ),
+    "is_only: ahead[i] = at[i] + PROBE * float(way) * ratio(step[i], reach)  ->  "
+    "ahead[i] = at[i] - PROBE * float(way) * ratio(step[i], reach)": "both sides are tried",
+    "is_rounding: more += 1  ->  more -= 1": "only zero is none",
+    f"compare_accelerations: {JUDGED}  ->  {JUDGED.replace('most * most', 'most + most')}": (
+        "contradictions of the given state were judged before, by the square of speeds"
+    ),
+    f"linearization: {FINITE}  ->  {FINITE.replace('+ too_large(NC * N', '- too_large(NC * N')}": LATER,
+    f"linearization: {FINITE}  ->  {FINITE.replace('+ too_large(NC * W', '- too_large(NC * W')}": LATER,
+    f"linearization: {FINITE}  ->  {FINITE.replace('NV * WIDTH', 'NV + WIDTH')}": LATER,
+    "reduced_equations: Mr[k * NI + j] = 0.0  ->  Mr[k * NI - j] = 0.0": (
+        "all entries are set in another order, as Python counts from the end"
+    ),
+    "compare_tangents: step[NC + k] = 0.0  ->  step[NC - k] = 0.0": (
+        "what stands there is a correction of positions, of the size of rounding"
+    ),
+}
 """Faults that change no result, and why."""
 
 

@@ -11,7 +11,7 @@ from particle import BETA, Particle, on_circle
 
 from linegraph.ir.algorithms.complete import complete
 from linegraph.ir.algorithms.dynamics import after_dynamics, constrained_dynamics, rhs
-from linegraph.ir.algorithms.language import Failed, reals
+from linegraph.ir.algorithms.language import Failed
 from linegraph.ir.algorithms.linearization import linearization
 from linegraph.ir.algorithms.project import project
 from linegraph.ir.algorithms.reduction import reduced_equations, reduction
@@ -21,8 +21,8 @@ ANGLES = (0.3, 1.2, 2.5, 4.0, 5.8)
 
 
 def called(algorithm: Any, particle: Any, *given: Any, sizes: tuple[int, ...]) -> list[Any]:
-    """The outputs of an algorithm."""
-    outputs = [reals(size) for size in sizes]
+    """The outputs of an algorithm, which writes all of them whatever stood there."""
+    outputs = [Particle.list([7.25] * size) for size in sizes]
     algorithm(particle, *map(Particle.list, given), *outputs)
     return [np.array([x[i] for i in range(len(x))]) for x in outputs]
 
