@@ -85,11 +85,7 @@ def bound(routine: Routine, around: Surroundings) -> tuple[Procedure, ...]:
         ValueError: the routine does not name a function that it calls, or gives no fact that it needs.
     """
     binder = _Binder(routine, around)
-    found = {
-        name: replace(x, body=binder.block(x.body))
-        for name, x in algorithm(routine.algorithm).items()
-    }
-    found = _called_only(found, routine.algorithm)
+    found = _called_only(algorithm(routine.algorithm), routine.algorithm, binder)
     found = _without_unread(found, routine.algorithm)
     made: dict[str, Procedure] = {}
     for name, x in found.items():
@@ -255,13 +251,20 @@ def declared(body: tuple[Statement, ...]) -> set[str]:
     return {x.name for x in nested(body) if isinstance(x, kinds)}
 
 
-def _called_only(found: dict[str, Procedure], entry: str) -> dict[str, Procedure]:
-    """The procedures that are called, directly or not."""
+def _called_only(
+    known: Mapping[str, Procedure], entry: str, binder: _Binder
+) -> dict[str, Procedure]:
+    """The procedures that are called, directly or not, with their bodies bound.
+
+    Others are not bound: they may use functions that this model does not have.
+    """
     needed = {entry}
-    for name in reversed(found):
+    made: dict[str, Procedure] = {}
+    for name in reversed(known):
         if name in needed:
-            needed |= {x.procedure for x in invocations(found[name].body)}
-    return {name: x for name, x in found.items() if name in needed}
+            made[name] = replace(known[name], body=binder.block(known[name].body))
+            needed |= {x.procedure for x in invocations(made[name].body)}
+    return {name: made[name] for name in known if name in made}
 
 
 def _without_unread(found: dict[str, Procedure], entry: str) -> dict[str, Procedure]:
