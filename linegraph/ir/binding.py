@@ -260,7 +260,7 @@ def _called_only(
     """
     needed = {entry}
     made: dict[str, Procedure] = {}
-    for name in reversed(known):
+    for name in reversed(list(known)):
         if name in needed:
             made[name] = replace(known[name], body=binder.block(known[name].body))
             needed |= {x.procedure for x in invocations(made[name].body)}
