@@ -29,7 +29,7 @@ from linegraph.emission.emit import render
 
 SYSTEMS, STATES, BATCH = 200, 10, 10
 SLICES = range(0, SYSTEMS, BATCH)
-FEW = SLICES[::10]
+FEW = SLICES[::20]
 """Of all systems every fourth ten."""
 
 TOLERANCE = 1e-8  # relative to 1 + the largest expected entry; measured 6e-12

@@ -85,6 +85,7 @@ def test_compiles_without_a_warning(
     has_no_warnings(emitted[name], name, tmp_path, compiler, ("-O2",))
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("name", ["panda_symbolic", "random_tree"])
 def test_sanitizers_find_nothing(
     name: str, emitted: dict[str, dict[str, str]], tmp_path: Path

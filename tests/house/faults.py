@@ -52,6 +52,7 @@ STAGES = (
         "tests/programs",
         "tests/conformance/test_golden.py",
         "tests/conformance/test_components.py",
+        "tests/conformance/test_constraints.py",
     ),
 )
 """Tests of the first stage take seconds, those of the second a minute or two."""
