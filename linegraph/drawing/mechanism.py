@@ -30,7 +30,7 @@ from linegraph.drawing.scene import (
     moved,
     tenth,
 )
-from linegraph.drawing.stand import SLIDES, Stand
+from linegraph.drawing.stand import Stand
 from linegraph.drawing.svg import svg_text
 from linegraph.drawing.symbols import (
     END_ON,
@@ -48,7 +48,6 @@ if TYPE_CHECKING:
     from linegraph.numeric.derived import Derived
 
 SIGN, SIGN_HIGH = 56, 24
-LONG_SIGNS = ("revolute", "prismatic", "cylindrical", "helical", "compound", "planar")
 MOST_LISTED = 9
 """Largest number of names in a list below the sketch; its title has all."""
 
@@ -177,12 +176,12 @@ class Sketch(Stand):
         """A ground symbol at a joint, on the side away from its link."""
         (x, y), axis = self.at[place.joint.name], self.along(place.axis)
         length = sqrt(axis[0] * axis[0] + axis[1] * axis[1])
-        if place.joint.kind == "prismatic" and length >= END_ON:
+        if place.joint.look.guided and length >= END_ON:
             self.labels.taken.append(Box(x - 24, y - 12, x + 24, y + 18))
             away = 13 if self.is_carriage(place) else 9
             return hatched((x, y), (axis[0] / length, axis[1] / length), away)
         tail = self.seen(place.tail if place.links[0] == GROUND_LINK else place.head)
-        if place.joint.kind in SLIDES and far(tail, (x, y), 12):
+        if place.joint.look.apart and far(tail, (x, y), 12):
             return self._ground(tail, True)
         every = [*self.at.values(), *(self.seen(c) for c in self.poses.centers.values())]
         below = sum(p[1] - y for p in every) <= 20 * len(every)
@@ -224,21 +223,17 @@ class Sketch(Stand):
             at, axis = self.at[place.joint.name], self.along(place.axis)
             guide: list[Item] = []
             tail = self.seen(place.tail)
-            if place.joint.kind in SLIDES and far(tail, at, 12):
-                pen = (
-                    Pen(GREY, 1.2, (4, 3))
-                    if place.joint.kind in ("free", "compound")
-                    else Pen(GREY, 1.2)
-                )
+            if place.joint.look.apart and far(tail, at, 12):
+                pen = Pen(GREY, 1.2, (4, 3)) if place.joint.look.loose else Pen(GREY, 1.2)
                 guide = [line(tail, at, pen=pen)]
                 self.labels.along((tail, at))
             large = self.is_carriage(place)
-            sign = carriage(at, axis) if large else joint_symbol(place.joint.kind, at, axis)
+            sign = carriage(at, axis) if large else joint_symbol(place.joint.look.sign, at, axis)
             about = f"{place.joint.kind}, {' → '.join(place.joint.between)}"
             items.append(Part("joint", place.joint.name, (*guide, *sign), about))
             self.labels.taken.append(Box(at[0] - 9, at[1] - 9, at[0] + 9, at[1] + 9))
             length = sqrt(axis[0] * axis[0] + axis[1] * axis[1])
-            if length >= END_ON and place.joint.kind not in ("spherical", "universal", "free"):
+            if length >= END_ON and place.joint.look.directed:
                 reach = 46 if large else 20
                 dx, dy = reach * axis[0] / length, reach * axis[1] / length
                 self.labels.along(((at[0] - dx, at[1] - dy), (at[0] + dx, at[1] + dy)))
@@ -329,14 +324,15 @@ class Sketch(Stand):
         items: list[Item] = []
         x = 0
         for kind in kinds:
-            axes = [self.along(p.axis) for p in self.poses.joints if p.joint.kind == kind]
+            alike = [p for p in self.poses.joints if p.joint.kind == kind]
+            axes, look = [self.along(p.axis) for p in alike], alike[0].joint.look
             end_on = all(x * x + y * y < END_ON * END_ON for x, y in axes)
-            room = SIGN if kind in LONG_SIGNS and not end_on else SIGN // 2
+            room = SIGN if look.long and not end_on else SIGN // 2
             wide = room + width(kind, SMALL) + 14
             if x and x + wide > self.width:
                 x, self.height = 0, self.height + SIGN_HIGH
             y = self.height + SIGN_HIGH // 2
-            sign = joint_symbol(kind, (x + room / 2, y), (0, 0) if end_on else (1, 0))
+            sign = joint_symbol(look.sign, (x + room / 2, y), (0, 0) if end_on else (1, 0))
             items += [*sign, Text(x + room + 4, y + 3.5, kind, SMALL, color=GREY)]
             x += wide
         self.height += SIGN_HIGH if kinds else 0

@@ -23,12 +23,6 @@ WIDE, HIGH, BORDER, MOST_BORDER = 340, 270, 95, 170
 MORE, MOST, LARGER = 14, 300, 1.4
 
 TITLE = 24
-SLIDES = ("prismatic", "cylindrical", "helical", "planar", "free", "compound")
-"""Joints whose two frames may be apart."""
-
-SHIFTED = ("revolute", "cylindrical", "helical", "prismatic")
-ACTUATED = ("prismatic", "cylindrical", "helical")
-
 SHIFTS = (0, -22, 22, -40, 40, -58, 58)
 CLEAR = 20
 """Least distance between symbols; a pin may be moved along its axis to keep it."""
@@ -101,14 +95,14 @@ class Stand:
         """Place a joint's symbol, moved along its axis if others are too close."""
         at = self.seen(place.head)
         axis = self.along(place.axis)
-        if place.joint.kind in SHIFTED:
+        if place.joint.look.shifted:
             for shift in SHIFTS:
                 moved_to = (tenth(at[0] + shift * axis[0]), tenth(at[1] + shift * axis[1]))
                 if all(far(moved_to, other, CLEAR) for other in self.at.values()):
                     at = moved_to
                     break
-        tail = self.seen(place.tail) if place.joint.kind in SLIDES else at
-        if place.joint.kind in ACTUATED and GROUND_LINK not in place.links and far(tail, at, 40):
+        tail = self.seen(place.tail) if place.joint.look.apart else at
+        if place.joint.look.actuated and GROUND_LINK not in place.links and far(tail, at, 40):
             # In the middle between its ends, where cylinder and piston meet.
             self._attach(place.links[0], tail)
             self._attach(place.links[1], at)
@@ -142,10 +136,10 @@ class Stand:
         others = (
             self.at[p.joint.name]
             for p in self.poses.joints
-            if p is not place and p.joint.kind != "prismatic"
+            if p is not place and not p.joint.look.guided
         )
         return (
-            place.joint.kind == "prismatic"
+            place.joint.look.guided
             and x * x + y * y >= END_ON * END_ON
             and any(not far(at, other, 6) for other in others)
         )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import sqrt
 from typing import TYPE_CHECKING
 
+from linegraph.components.joints.look import ABOUT, ALONG
 from linegraph.spatial.vector import Vector, cross, dot, scale, subtract
 
 if TYPE_CHECKING:
@@ -77,8 +78,8 @@ def chosen_view(found: Poses) -> View:
 
 def _normal(found: Poses) -> Vector | None:
     """Normal of the plane of motion of all joints; None if there is none."""
-    turning = [p.axis for p in found.joints if p.joint.kind in ("revolute", "planar")]
-    sliding = [p.axis for p in found.joints if p.joint.kind == "prismatic"]
+    turning = [p.axis for p in found.joints if p.joint.look.plane == ABOUT]
+    sliding = [p.axis for p in found.joints if p.joint.look.plane == ALONG]
     if len(turning) + len(sliding) < len(found.joints) or not found.joints:
         return None
     candidates: list[Vector] = turning[:1] or [(0.0, -1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)]

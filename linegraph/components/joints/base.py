@@ -20,6 +20,7 @@ from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
+from linegraph.components.joints.look import Look
 from linegraph.errors import ModelError
 from linegraph.spatial.inertia import NO_MOMENTS, Moments
 from linegraph.spatial.rotation import IDENTITY_MATRIX, Rotation
@@ -129,6 +130,8 @@ class Joint:
     """Whether all it does is turn about z, so that turning its frames about z only shifts its angle."""
     slides: ClassVar[tuple[int, ...]] = ()
     """The axes along which its two frames may be shifted together: its motion stays the same."""
+    look: ClassVar[Look] = Look()
+    """How pictures draw it."""
 
     @property
     def freedoms(self) -> int:

@@ -19,6 +19,7 @@ from linegraph.components.joints.composition import (
 )
 from linegraph.components.joints.cylindrical import Cylindrical
 from linegraph.components.joints.helical import Helical
+from linegraph.components.joints.look import Look
 from linegraph.components.joints.planar import Planar
 from linegraph.components.joints.prismatic import Prismatic
 from linegraph.components.joints.revolute import Revolute
@@ -67,6 +68,7 @@ class Compound(Joint):
 
     parts: tuple[Any, ...] = ()
     kind = "compound"
+    look = Look("compound", apart=True, loose=True, long=True)
 
     def __post_init__(self) -> None:
         """Refuse no parts, parts that cannot be, and more than six freedoms, with a `ModelError`."""

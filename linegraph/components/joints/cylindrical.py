@@ -12,6 +12,7 @@ from linegraph.components.joints.base import (
     Restriction,
     angle_about_z,
 )
+from linegraph.components.joints.look import Look
 from linegraph.ir.program import Quantity
 from linegraph.spatial.inertia import Moments, round_apart
 from linegraph.spatial.motion import Motion
@@ -37,6 +38,7 @@ class Cylindrical(Joint):
     """
 
     kind = "cylindrical"
+    look = Look("cylindrical", apart=True, shifted=True, actuated=True, long=True)
     freedoms = 2
     slides = (2,)
 

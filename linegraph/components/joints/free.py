@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from linegraph.components.joints.base import Joint, Restriction
 from linegraph.components.joints.composition import compose, onto
+from linegraph.components.joints.look import Look
 from linegraph.components.joints.prismatic import Prismatic
 from linegraph.components.joints.spherical import Spherical
 from linegraph.ir.program import Quantity
@@ -44,6 +45,7 @@ class Free(Joint):
     effort: bool = False
     angles: str | None = None
     kind = "free"
+    look = Look("free", apart=True, loose=True, directed=False)
     freedoms = 6
 
     def __post_init__(self) -> None:

@@ -14,6 +14,7 @@ from linegraph.components.joints.base import (
     Thread,
     angle_about_z,
 )
+from linegraph.components.joints.look import Look
 from linegraph.components.validation import finite
 from linegraph.errors import ModelError
 from linegraph.ir.program import Quantity
@@ -47,6 +48,7 @@ class Helical(Joint):
 
     lead: Any = None
     kind = "helical"
+    look = Look("helical", apart=True, shifted=True, actuated=True, long=True)
     freedoms = 1
     slides = (2,)
 

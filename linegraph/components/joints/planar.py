@@ -12,6 +12,7 @@ from linegraph.components.joints.base import (
     Restriction,
     angle_about_z,
 )
+from linegraph.components.joints.look import ABOUT, Look
 from linegraph.ir.program import Quantity
 from linegraph.spatial.inertia import Moments, round_apart
 from linegraph.spatial.motion import Motion
@@ -42,6 +43,7 @@ class Planar(Joint):
     """
 
     kind = "planar"
+    look = Look("planar", apart=True, long=True, plane=ABOUT)
     freedoms = 3
     slides = (2,)
 

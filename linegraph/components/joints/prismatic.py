@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from linegraph.components.joints.base import NO_SHIFT_ACROSS_Z, NO_TURN, Joint, Restriction
+from linegraph.components.joints.look import ALONG, Look
 from linegraph.ir.program import Quantity
 from linegraph.spatial.inertia import Moments
 from linegraph.spatial.motion import Motion
@@ -30,6 +31,9 @@ class Prismatic(Joint):
     """
 
     kind = "prismatic"
+    look = Look(
+        "prismatic", apart=True, shifted=True, actuated=True, guided=True, long=True, plane=ALONG
+    )
     freedoms = 1
     slides = (0, 1, 2)
 

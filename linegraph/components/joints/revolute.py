@@ -12,6 +12,7 @@ from linegraph.components.joints.base import (
     Restriction,
     angle_about_z,
 )
+from linegraph.components.joints.look import ABOUT, Look
 from linegraph.ir.program import Quantity
 from linegraph.spatial.inertia import Moments
 from linegraph.spatial.motion import Motion
@@ -36,6 +37,7 @@ class Revolute(Joint):
     """
 
     kind = "revolute"
+    look = Look("revolute", shifted=True, long=True, plane=ABOUT)
     freedoms = 1
     turns = True
     slides = (2,)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from linegraph.components.joints.base import NO_SHIFT, Joint, Restriction
 from linegraph.components.joints.composition import angles_of, hinges, reciprocal, turns
+from linegraph.components.joints.look import Look
 from linegraph.errors import ModelError
 from linegraph.ir.program import Quantity
 from linegraph.spatial.inertia import Moments, point_apart
@@ -53,6 +54,7 @@ class Spherical(Joint):
 
     angles: str | None = None
     kind = "spherical"
+    look = Look("spherical", directed=False)
     freedoms = 3
 
     def __post_init__(self) -> None:

@@ -16,6 +16,7 @@ from linegraph.components.joints.composition import (
     seen,
     turns,
 )
+from linegraph.components.joints.look import Look
 from linegraph.errors import ModelError
 from linegraph.ir.program import Quantity
 from linegraph.spatial.inertia import Moments, point_apart
@@ -51,6 +52,7 @@ class Universal(Joint):
 
     axes: tuple[Vector, Vector] = ((1, 0, 0), (0, 1, 0))
     kind = "universal"
+    look = Look("universal", directed=False)
     freedoms = 2
 
     def __post_init__(self) -> None:
