@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import fields
 from functools import reduce
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linegraph.errors import ModelError
 from linegraph.paper.joint_form import (
@@ -31,7 +31,7 @@ from linegraph.paper.star_tree import (
 )
 from linegraph.spatial import vector
 from linegraph.spatial.rotation import Full
-from linegraph.spatial.vector import ZERO, Vector, add, cross, dot, negate, scale
+from linegraph.spatial.vector import ZERO, Matrix, Vector, add, cross, dot, negate, scale
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -171,27 +171,11 @@ def _star_tree(state: TreeState, applied: Applied | None) -> StarTree:
         ends += [f"B_{j}", f"C_{j}"]
         chords += [f"C_{parent + 1} -> B_{j}", f"C_{j} -> B_{j}"]
     p, h = _topology(parents)
-    x, x_r, w = (zeros(len(chords)) for _ in range(3))
-    x_slide, w_slide, y_t, y_r = (zeros(len(chords)) for _ in range(4))
-    masses: list[Scalar] = [0] * len(chords)
-    inertias = [NO_TENSOR] * len(chords)
+    edges: list[_Edge] = []
     for j, i in enumerate(links):
-        arm, out = state.arms[i], Full(bodies[i].rotation).out
-        outer, inner = 2 * j, 2 * j - 1
-        masses[outer], inertias[outer] = bodies[i].mass, bodies[i].inertia.rows
-        x[outer] = negate(c[i][i])
-        x_r[outer] = negate(out(vector.combine(arm.rates, arm.motion.angular)))
-        w[outer] = negate(out(angular_remainder(arm)))
-        if j > 0:
-            x[inner] = c[tree.links[i].parent][i]
-            x_slide[inner] = out(vector.combine(arm.rates, arm.motion.linear))
-            w_slide[inner] = out(linear_remainder(arm))
-        y_t[outer] = scale(bodies[i].mass, tree.gravity)
-        if applied is not None:
-            force, torque = (out(part) for part in applied.wrenches[i])
-            y_t[outer] = add(y_t[outer], force)
-            # about the mass centre instead of the link's origin
-            y_r[outer] = add(torque, cross(x[outer], force))
+        # the first body has no inner chord: branch 1 carries its translation
+        edges += [_inner(state, bodies, c, i)] if j > 0 else []
+        edges.append(_outer(state, bodies, c, i, applied))
     s, k = _axes(state, bodies, links)
     spin, spin_rate, pull = _basement_motion(state, bodies, c, links[0])
     return StarTree(
@@ -203,19 +187,66 @@ def _star_tree(state: TreeState, applied: Applied | None) -> StarTree:
         P_star=[[max(-entry, 0) for entry in row] for row in p],
         S=s,
         K=k,
-        X=x,
-        X_r=x_r,
-        X_slide=x_slide,
-        W=w,
-        W_slide=w_slide,
+        X=[edge.x for edge in edges],
+        X_r=[edge.x_r for edge in edges],
+        X_slide=[edge.x_slide for edge in edges],
+        W=[edge.w for edge in edges],
+        W_slide=[edge.w_slide for edge in edges],
         X_1_r=spin,
         X_1_r_dot=spin_rate,
         X_1_ddot=pull,
-        m=masses,
-        I=inertias,
-        Y_t=y_t,
-        Y_r=y_r,
+        m=[edge.mass for edge in edges],
+        I=[edge.inertia for edge in edges],
+        Y_t=[edge.y_t for edge in edges],
+        Y_r=[edge.y_r for edge in edges],
         Y_c=[0] * len(tree.velocities) if applied is None else list(applied.efforts),
+    )
+
+
+class _Edge(NamedTuple):
+    """A chord with the branch that ends at its head: their entries in the columns of the star tree."""
+
+    x: Vector = ZERO
+    x_r: Vector = ZERO
+    x_slide: Vector = ZERO
+    w: Vector = ZERO
+    w_slide: Vector = ZERO
+    mass: Scalar = 0
+    inertia: Matrix = NO_TENSOR
+    y_t: Vector = ZERO
+    y_r: Vector = ZERO
+
+
+def _inner(state: TreeState, bodies: list[Resolved], c: Rows, i: int) -> _Edge:
+    """The chord from the mass centre before a joint to the joint, with its translation."""
+    arm, out = state.arms[i], Full(bodies[i].rotation).out
+    return _Edge(
+        x=c[state.tree.links[i].parent][i],
+        x_slide=out(vector.combine(arm.rates, arm.motion.linear)),
+        w_slide=out(linear_remainder(arm)),
+    )
+
+
+def _outer(
+    state: TreeState, bodies: list[Resolved], c: Rows, i: int, applied: Applied | None
+) -> _Edge:
+    """The chord from a mass centre to its joint, with the joint's rotation and all that acts on the body."""
+    arm, body = state.arms[i], bodies[i]
+    out = Full(body.rotation).out
+    x = negate(c[i][i])
+    force, torque = scale(body.mass, state.tree.gravity), ZERO
+    if applied is not None:
+        push, twist = (out(part) for part in applied.wrenches[i])
+        # about the mass centre instead of the link's origin
+        force, torque = add(force, push), add(twist, cross(x, push))
+    return _Edge(
+        x=x,
+        x_r=negate(out(vector.combine(arm.rates, arm.motion.angular))),
+        w=negate(out(angular_remainder(arm))),
+        mass=body.mass,
+        inertia=body.inertia.rows,
+        y_t=force,
+        y_r=torque,
     )
 
 

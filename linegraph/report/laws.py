@@ -47,7 +47,7 @@ LONGEST_CELL = 60
 """Motions of joints longer than this (characters) are placed below their table."""
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from linegraph.components.joints import Joint
     from linegraph.components.scalar.branches import Branch
@@ -164,36 +164,45 @@ def _by_components(part: TwoSides) -> list[EquationRow]:
 
 def _joint(subject: Subject, joint: Joint) -> tuple[Text, Text]:
     """Relative motion of a joint in its head's axes, and its through variables along the motion."""
-    own = joint.resolved(subject.resolve)
+    moves = [
+        TwoSides(vector(symbol, joint.name), "=", Components(entries))
+        for symbol, entries in zip("ωv", _relative_motion(subject, joint), strict=True)
+        if any(entry != ZERO for entry in entries)
+    ]
+    efforts = _efforts(subject, joint) or (f"none; {6 - joint.freedoms} reactions",)
+    return _listed(moves) or ("none",), efforts
+
+
+def _relative_motion(subject: Subject, joint: Joint) -> tuple[tuple[Math, ...], tuple[Math, ...]]:
+    """Angular velocity and velocity of the head relative to the tail, by components in the head's axes."""
+    own, algebra = joint.resolved(subject.resolve), subject.algebra
     names = [quantity.name for quantity in joint.positions()]
     rates = [_rate(subject, quantity.name, names) for quantity in joint.velocities()]
-    algebra = subject.algebra
     q, v = (tuple(algebra.symbol("", name) for name in found) for found in (names, rates))
-    motion = own.motion(algebra, q, v)
-    axes = own.alignment()
-    shown: list[Inline] = []
-    for symbol, directions in (("ω", motion.angular), ("v", motion.linear)):
+    motion, axes = own.motion(algebra, q, v), own.alignment()
+
+    def components(directions: Iterable[Any]) -> tuple[Math, ...]:
         turned = [times(axes, d) for d in directions]
-        entries = [sum(d[k] * x for d, x in zip(turned, v, strict=True)) for k in range(3)]
-        trees = tuple(subject.expression(e) for e in entries)
-        if any(tree != ZERO for tree in trees):
-            shown += [", "] if shown else []
-            shown.append(TwoSides(vector(symbol, joint.name), "=", Components(trees)))
-    if not shown:
-        shown.append("none")
-    efforts: list[Inline] = []
-    given = {quantity.name for quantity in subject.tree.inputs}
-    acting = joint.effort and joint.drive is None
-    for quantity in joint.velocities() if acting else ():
-        if quantity.name not in given:
-            continue  # it follows another joint
-        efforts += [", "] if efforts else []
-        efforts.append(subject.look.name(subject.efforts[quantity.name]))
+        entries = (sum(d[k] * x for d, x in zip(turned, v, strict=True)) for k in range(3))
+        return tuple(map(subject.expression, entries))
+
+    return components(motion.angular), components(motion.linear)
+
+
+def _efforts(subject: Subject, joint: Joint) -> Text:
+    """The efforts of a joint along its velocities, or how its motion is prescribed."""
     if joint.drive is not None:
         by = "inputs" if joint.drive == BY_INPUT else "the time"
-        efforts = [f"what drives it; its motion is prescribed by {by}"]
-    held = 6 - joint.freedoms
-    return tuple(shown), tuple(efforts) if efforts else (f"none; {held} reactions",)
+        return (f"what drives it; its motion is prescribed by {by}",)
+    # a joint that follows another one has no input
+    given = {quantity.name for quantity in subject.tree.inputs} if joint.effort else set()
+    own = [quantity.name for quantity in joint.velocities() if quantity.name in given]
+    return _listed([subject.look.name(subject.efforts[name]) for name in own])
+
+
+def _listed(parts: Sequence[Inline]) -> Text:
+    """Parts with commas between them."""
+    return tuple(x for part in parts for x in (", ", part))[1:]
 
 
 def _rate(subject: Subject, name: str, positions: Sequence[str]) -> str:
