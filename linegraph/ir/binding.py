@@ -277,26 +277,20 @@ def _without_unread(found: dict[str, Procedure], entry: str) -> dict[str, Proced
         places: dict[str, list[int]] = {}
         for name, x in kept.items():
             read = names_read(x.body)
-            written = {
-                y.target.array
-                for y in nested(x.body)
-                if isinstance(y, Assign) and isinstance(y.target, ArrayEntry)
+            named = enumerate(x.parameters)
+            places[name] = [k for k, p in named if name == entry or p.name in read]
+        if all(len(places[name]) == len(x.parameters) for name, x in kept.items()):
+            if kept == found:
+                return found
+        else:
+            kept = {
+                name: replace(
+                    x,
+                    parameters=tuple(x.parameters[place] for place in places[name]),
+                    body=_with_arguments(x.body, places),
+                )
+                for name, x in kept.items()
             }
-            places[name] = [
-                place
-                for place, parameter in enumerate(x.parameters)
-                if name == entry or parameter.name in read | written
-            ]
-        kept = {
-            name: replace(
-                x,
-                parameters=tuple(x.parameters[place] for place in places[name]),
-                body=_with_arguments(x.body, places),
-            )
-            for name, x in kept.items()
-        }
-        if kept == found:
-            return found
         found = kept
 
 
