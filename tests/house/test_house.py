@@ -115,7 +115,7 @@ def test_codegen_sees_programs_only() -> None:
 
 def test_joint_types_know_the_base_and_what_they_are_made_of() -> None:
     joints = "linegraph.components.joints"
-    common = {f"{joints}.base", f"{joints}.composition"}
+    common = {f"{joints}.base", f"{joints}.composition", f"{joints}.look"}
     made_of = {
         f"{joints}.free": {f"{joints}.prismatic", f"{joints}.spherical"},
         f"{joints}.composition": {f"{joints}.revolute"},
