@@ -9,4 +9,7 @@ its counts, on where its coordinates are, and on its other emitted functions
 
 Arrays are passed one by one, outputs last, since records of arrays are not what all languages have. A
 condition of counts and other facts of the model alone is decided before anything is printed.
+
+Arguments of long calls are unpacked from tuples, a tuple for each line. Conditional expressions stand where
+``min`` and ``max`` would hide a NaN; `larger` is the maximum that every language has.
 """
