@@ -6,9 +6,10 @@ a line in the register below. Nothing here knows a body or a joint.
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING
 
-from codegen import c, naming, python
+from codegen import naming
 from codegen.language import Language
 from codegen.options import DEFAULT, REAL, TRIG, Options, options_of
 
@@ -16,11 +17,11 @@ if TYPE_CHECKING:
     from linegraph.ir.golden_vectors import Vectors
     from linegraph.ir.program import Module
 
-_REGISTER: dict[str, Language] = {
-    "c": c.LANGUAGE,
-    "python": python.LANGUAGE,
+_REGISTER: dict[str, str | Language] = {
+    "c": "codegen.c",
+    "python": "codegen.python",
 }
-"""All languages by name."""
+"""All languages by name; a package has its own as `LANGUAGE` and is imported when it is written in."""
 
 __all__ = [
     "LANGUAGES",
@@ -41,7 +42,11 @@ LANGUAGES = tuple(_REGISTER)
 
 def known(name: str) -> Language:
     """One of `LANGUAGES`."""
-    return _REGISTER[name]
+    found = _REGISTER[name]
+    if isinstance(found, Language):
+        return found
+    language: Language = import_module(found).LANGUAGE
+    return language
 
 
 def render(module: Module, language: str, options: Options = DEFAULT) -> dict[str, str]:

@@ -1,8 +1,8 @@
 """Faults in algorithms: a wrong sign, index or operator in one line is seen by the tests of algorithms.
 
 A fault that is no statement any more is seen by the reader. Any other one is put into the running function
-itself, so that all that call it have it; then the tests of algorithms run until one fails. A hundred and fifty by
-default, all with ``--all-forms``.
+itself, so that all that call it have it; then the tests of algorithms run until one fails. A hundred and
+fifty by default, all with ``--all-forms``.
 """
 
 from __future__ import annotations
