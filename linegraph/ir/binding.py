@@ -79,7 +79,14 @@ class Surroundings:
 
 
 def bound(routine: Routine, around: Surroundings) -> tuple[Procedure, ...]:
-    """The procedures of a routine, each after those that it calls, its own one last.
+    """The procedures of a routine, bound to its module.
+
+    Args:
+        routine: the routine; its details give the facts of the model that the algorithm needs.
+        around: the functions of its module, the counts and which functions report a status.
+
+    Returns:
+        The procedures, each after those that it calls; that of the routine itself is last.
 
     Raises:
         ValueError: the routine does not name a function that it calls, or gives no fact that it needs.

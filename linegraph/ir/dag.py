@@ -27,16 +27,29 @@ SYMBOL, NEG, ADD, SUB, MUL, DIV = "symbol", "neg", "add", "sub", "mul", "div"
 
 
 class Node:
-    """One operation of the DAG: ``op(a, b)``; `index` orders nodes by construction.
+    """One operation of the DAG: ``op(a, b)``.
 
-    A symbol has the name of the argument it is read from in `a` and its place there in `b`: ``q, 3`` or
-    ``p, "mass"`` or ``t, None``. `label` says which part of the system the node was derived for.
+    Attributes:
+        dag: the DAG that the node belongs to.
+        op: the operation: `SYMBOL`, `NEG`, `ADD`, `SUB`, `MUL`, `DIV` or a name in `functions.ARITY`.
+        a: the first operand; for a symbol the name of the argument from which it is read.
+        b: the second operand, None if there is none; for a symbol its place in that argument: 3 for
+            ``q[3]``, ``"mass"`` for a parameter, None for the time.
+        index: the number of nodes that were made before this one.
+        label: the part of the system for which the node was derived.
     """
 
     __slots__ = ("a", "b", "dag", "index", "label", "op")
 
     def __init__(self, dag: Dag, op: str, a: Any, b: Any) -> None:
-        """Only `Dag` makes nodes."""
+        """Number the node and copy the current label; only `Dag` calls this.
+
+        Args:
+            dag: the DAG that the node belongs to; its count goes up by one.
+            op: the operation.
+            a: the first operand.
+            b: the second operand, None if there is none.
+        """
         self.dag = dag
         self.op = op
         self.a = a
@@ -111,11 +124,21 @@ class Dag:
         self._known.clear()
 
     def symbol(self, argument: str, place: int | str | None = None) -> Node:
-        """The input at `place` of `argument`; asking again gives the same node."""
+        """The node that reads an input; repeated calls return the same node.
+
+        Args:
+            argument: the name of the emitted function's argument, such as ``q`` or ``p``.
+            place: the index in an array, the name of a parameter, or None for a single number.
+        """
         return self._node(SYMBOL, argument, place)
 
     def copied(self, node: Node, known: Mapping[int, Operand]) -> Operand:
-        """An operation of another DAG, on operands that are copies, too; `known` has these by index."""
+        """Copy an operation of another DAG into this one.
+
+        Args:
+            node: the operation in the other DAG.
+            known: by index in the other DAG, the copies of the nodes on which it operates.
+        """
         a, b = node.a, node.b
         a = known[a.index] if isinstance(a, Node) else a
         return self._node(node.op, a, known[b.index] if isinstance(b, Node) else b)
@@ -133,7 +156,15 @@ class Dag:
         return self._function("sqrt", x)
 
     def function(self, name: str, *x: Operand) -> Operand:
-        """Any function of `functions.ARITY`."""
+        """The value of an elementary function; it is a number if all arguments are numbers.
+
+        Args:
+            name: one of `functions.ARITY`.
+            x: as many arguments as the function takes; angles in radians.
+
+        Raises:
+            ModelError: all arguments are numbers, and the function has no finite value there.
+        """
         numbers = [part for part in x if not isinstance(part, Node)]
         if len(numbers) == len(x):
             return of_numbers(name, *numbers)
@@ -151,7 +182,12 @@ class Dag:
         return self._node(NEG, x, None)
 
     def add(self, x: Operand, y: Operand) -> Operand:
-        """``x + y``; negations are pulled out, so they cost nothing."""
+        """The sum ``x + y``; negations are moved outward, where they need no operation.
+
+        Args:
+            x: one summand.
+            y: the other summand; equal nodes become ``2 x``.
+        """
         if not isinstance(x, Node):
             return self._shift(y, x) if isinstance(y, Node) else x + y
         if not isinstance(y, Node):
@@ -165,7 +201,12 @@ class Dag:
         return self._node(ADD, x, y) if x.index <= y.index else self._node(ADD, y, x)
 
     def subtract(self, x: Operand, y: Operand) -> Operand:
-        """``x - y``; of a - b and b - a only one is ever computed."""
+        """The difference ``x - y``; if ``y - x`` already exists, its negative is returned.
+
+        Args:
+            x: the minuend.
+            y: the subtrahend.
+        """
         if not isinstance(y, Node):
             return self.add(x, -y)
         if y.op == NEG:
@@ -180,7 +221,12 @@ class Dag:
         return self._node(SUB, x, y) if turned is None else self.negate(turned)
 
     def multiply(self, x: Operand, y: Operand) -> Operand:
-        """``x * y``; signs move outward, constant factors meet."""
+        """The product ``x * y``; signs are moved outward and numeric factors are combined.
+
+        Args:
+            x: one factor.
+            y: the other factor.
+        """
         if not isinstance(x, Node):
             return self._scale(x, y) if isinstance(y, Node) else x * y
         if not isinstance(y, Node):
@@ -192,7 +238,15 @@ class Dag:
         return self._node(MUL, x, y) if x.index <= y.index else self._node(MUL, y, x)
 
     def divide(self, x: Operand, y: Operand) -> Operand:
-        """``x / y``; dividing by the number zero is a bug and raises."""
+        """The quotient ``x / y``.
+
+        Args:
+            x: the numerator.
+            y: the denominator; a division by a number becomes a multiplication by its reciprocal.
+
+        Raises:
+            ZeroDivisionError: y is the number zero, which is an error of the derivation.
+        """
         if not isinstance(y, Node):
             return x / y if not isinstance(x, Node) else self.multiply(1 / Fraction(y), x)
         if not isinstance(x, Node):

@@ -41,7 +41,14 @@ _OWN: dict[str, Callable[..., float]] = {
 
 
 def of_numbers(name: str, *x: float | Fraction) -> float:
-    """A function of numbers: exact where the result is 0, 1 or -1 at such an argument, else a float.
+    """The value of an elementary function of numbers.
+
+    Args:
+        name: one of `ARITY`.
+        x: as many numbers as the function takes; angles in radians.
+
+    Returns:
+        A float, or an integer if the arguments are 0 or 1 and the result is 0, 1 or -1.
 
     Raises:
         ModelError: the function has no finite value there.

@@ -140,7 +140,12 @@ def ends(program: Program) -> list[Operand]:
 
 
 def is_constant(x: Operand, known: dict[int, bool]) -> bool:
-    """Whether an operand depends on parameters at most; `known` keeps the answers, by index."""
+    """Whether an operand depends on nothing but numbers and parameters.
+
+    Args:
+        x: the operand.
+        known: the results for nodes that have been examined, by index; those found here are added.
+    """
     if not isinstance(x, Node):
         return True
     pending = [x]
@@ -158,7 +163,13 @@ def is_constant(x: Operand, known: dict[int, bool]) -> bool:
 
 
 def remade(dag: Dag, node: Node, of: Callable[[Operand], Operand]) -> Operand:
-    """The same operation in `dag`, on what its operands have become."""
+    """The operation of a node, repeated in a DAG on new operands.
+
+    Args:
+        dag: the DAG in which the operation is made.
+        node: the operation; a symbol becomes the symbol of the same name.
+        of: maps each old operand to the new one, which belongs to `dag`.
+    """
     if node.op == SYMBOL:
         return dag.symbol(node.a, node.b)
     a = of(node.a)
@@ -172,7 +183,11 @@ def remade(dag: Dag, node: Node, of: Callable[[Operand], Operand]) -> Operand:
 
 
 def mapped(program: Program, of: Callable[[Operand], Operand]) -> Program:
-    """A program with other results and checks, not yet put in order; a check that cannot fail is left out.
+    """A program with replaced results and checks, whose steps are not yet updated.
+
+    Args:
+        program: the program; checks that cannot fail after the replacement are dropped.
+        of: maps each entry of a result and both sides of each check to its replacement.
 
     Raises:
         ModelError: a check fails at every state.
@@ -189,7 +204,15 @@ def mapped(program: Program, of: Callable[[Operand], Operand]) -> Program:
 
 
 def rewritten(program: Program, of: Callable[[Operand], Operand]) -> Program:
-    """A program of what its results and checks have become, put in order."""
+    """A program with replaced results and checks, assembled again.
+
+    Args:
+        program: the program; its name, arguments, calls and texts are kept.
+        of: maps each entry of a result and both sides of each check to its replacement.
+
+    Raises:
+        ModelError: a check fails at every state.
+    """
     made = mapped(program, of)
     return assemble(
         made.name,

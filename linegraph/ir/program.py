@@ -253,9 +253,17 @@ def assemble(
     results: tuple[Result, ...],
     guards: Guards = UNGUARDED,
 ) -> Program:
-    """Keep what the results need, put it in order and decide which nodes get a name.
+    """A program with the operations that its results and checks need, in order.
 
-    A node is named when it is used more than once or when the line would grow past `INLINE_LIMIT`.
+    An operation is assigned to a variable if it is used more than once or checked, or if the line would
+    otherwise have more than `INLINE_LIMIT` operations.
+
+    Args:
+        name: of the function.
+        about: its description, a sentence for the comment above it.
+        arguments: all that it reads, in the order of its parameters.
+        results: all that it writes, in the order of its parameters.
+        guards: its checks, and the functions it calls first.
     """
     checks = guards.checks
     live = _live(_roots(results, checks))
@@ -270,7 +278,12 @@ def assemble(
 
 
 def operations_of(results: tuple[Result, ...], checks: tuple[Check, ...] = ()) -> int:
-    """Operations that results and checks take together; a change of sign is free."""
+    """The number of operations that results and checks take together; a change of sign is free.
+
+    Args:
+        results: the results; operations that they share count once.
+        checks: the checks; a bound that is scaled by a fraction takes one more operation.
+    """
     scaled = sum(x.fraction is not None and isinstance(x.bound, Node) for x in checks)
     return scaled + len(_operations(_roots(results, checks)))
 
@@ -306,7 +319,12 @@ def _operations(roots: list[Node]) -> list[int]:
 
 
 def reads(argument: str, results: tuple[Result, ...]) -> bool:
-    """Whether any result depends on an argument of this name."""
+    """Whether any result depends on an argument.
+
+    Args:
+        argument: the name of the argument.
+        results: the results of a function.
+    """
     live = _live(_roots(results, ()))
     return any(node.op == SYMBOL and node.a == argument for node in live)
 

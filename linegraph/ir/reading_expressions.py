@@ -81,11 +81,11 @@ class BlockScope:
         self.blocks: list[dict[str, Known]] = [{}]
 
     def enter(self) -> None:
-        """A block begins."""
+        """Begin a block within the current one."""
         self.blocks.append({})
 
     def leave(self) -> None:
-        """It ends, and with it what it has declared."""
+        """End the current block and forget the names declared in it."""
         self.blocks.pop()
 
     def declare(
@@ -98,7 +98,16 @@ class BlockScope:
         detail: str = "",
         length: int | None = None,
     ) -> None:
-        """A name begins to stand for something."""
+        """Declare a name in the current block.
+
+        Args:
+            name: the variable or array.
+            kind: the type of the number, or of the entries.
+            array: whether it is an array.
+            constant: whether it is a constant, whose name is in capitals.
+            detail: the fact of the model that the array contains; empty for others.
+            length: the length of the array if its entries are known; else None.
+        """
         self.blocks[-1][name] = Known(kind, array, constant, detail, length)
 
     def knows(self, name: str) -> bool:
@@ -119,7 +128,14 @@ class ExpressionReader:
         refuse: Callable[[ast.AST, str], Any],
         signature: Callable[[FunctionType], Signature],
     ) -> None:
-        """`names` are those of the file, `refuse` raises with the place of a node."""
+        """Read expressions within a scope that the caller keeps up to date.
+
+        Args:
+            scope: the variables and arrays declared so far.
+            names: the global names of the file, with their values.
+            refuse: raises `ValueError` with the position of a node and a message.
+            signature: returns the signature of another function of algorithms.
+        """
         self.scope, self.names, self.refuse, self.signature = scope, names, refuse, signature
 
     def expression(self, node: ast.expr) -> Expression:
@@ -163,7 +179,15 @@ class ExpressionReader:
                 raise AssertionError
 
     def name(self, node: ast.AST, name: str) -> Expression:
-        """A variable, or a constant of the file."""
+        """A variable, or a constant of the file.
+
+        Args:
+            node: where the name occurs.
+            name: the name.
+
+        Raises:
+            ValueError: the name is not declared, or is that of an array.
+        """
         if self.scope.knows(name):
             known = self.scope[name]
             if known.array:
@@ -180,7 +204,15 @@ class ExpressionReader:
         raise AssertionError
 
     def array(self, node: ast.AST, name: str) -> ValueKind:
-        """What the entries of an array are."""
+        """The type of an array's entries.
+
+        Args:
+            node: where the array occurs.
+            name: of the array.
+
+        Raises:
+            ValueError: the name is not that of an array.
+        """
         if not self.scope.knows(name) or not self.scope[name].array:
             self.refuse(node, f"{name} is no array")
         return self.scope[name].kind
@@ -193,14 +225,31 @@ class ExpressionReader:
         return found
 
     def kind(self, x: Expression, node: ast.AST) -> ValueKind:
-        """What an expression is; a call that returns nothing is refused."""
+        """The type of an expression's value.
+
+        Args:
+            x: the expression.
+            node: where it occurs.
+
+        Raises:
+            ValueError: it is a call of a function that returns nothing.
+        """
         if x.kind is None:
             self.refuse(node, "this returns nothing")
         assert x.kind is not None
         return x.kind
 
     def alike(self, node: ast.AST, a: Expression, b: Expression) -> ValueKind:
-        """The common kind of two operands: numbers of different kinds do not meet."""
+        """The common type of two operands.
+
+        Args:
+            node: where they occur.
+            a: the first operand.
+            b: the second operand.
+
+        Raises:
+            ValueError: their types differ; nothing is converted implicitly.
+        """
         first, second = self.kind(a, node), self.kind(b, node)
         if first is not second:
             self.refuse(
@@ -209,7 +258,17 @@ class ExpressionReader:
         return first
 
     def operation(self, node: ast.AST, operator: str, a: Expression, b: Expression) -> Expression:
-        """A sum, difference, product or quotient."""
+        """A sum, difference, product or quotient.
+
+        Args:
+            node: where it occurs.
+            operator: ``+``, ``-``, ``*`` or ``/``.
+            a: the left operand.
+            b: the right operand, of the same type.
+
+        Raises:
+            ValueError: the types differ, are Boolean, or are whole numbers in a quotient.
+        """
         kind = self.alike(node, a, b)
         if kind is ValueKind.BOOL or (operator == "/" and kind is ValueKind.INT):
             self.refuse(node, f"{operator} takes real numbers")
@@ -264,7 +323,16 @@ class ExpressionReader:
         return Invocation(signature.name, arguments, signature.returns, fails=signature.fails)
 
     def argument(self, node: ast.expr, parameter: ProcedureParameter) -> Expression | ArrayPart:
-        """An argument, of the parameter's kind."""
+        """An argument of a call.
+
+        Args:
+            node: the argument.
+            parameter: the parameter for which it is passed.
+
+        Raises:
+            ValueError: its type differs from that of the parameter, or the called function writes to it
+                although it is a slice or a constant array.
+        """
         if not parameter.array:
             found = self.expression(node)
             if found.kind is not parameter.kind:

@@ -124,7 +124,12 @@ def names_read(body: tuple[Statement, ...]) -> set[str]:
 def with_invocations(
     body: tuple[Statement, ...], change: Callable[[Invocation], Invocation]
 ) -> tuple[Statement, ...]:
-    """A body in which all calls of procedures are changed."""
+    """A body in which all calls of procedures are replaced.
+
+    Args:
+        body: the statements, which are left as they are.
+        change: maps each call, whose arguments have been changed already, to its replacement.
+    """
 
     def of(x: Any) -> Any:
         match x:

@@ -120,7 +120,7 @@ class Minus:
 
 @dataclass(frozen=True)
 class Not:
-    """The opposite."""
+    """The negation of a condition."""
 
     a: Expression
     kind: ValueKind = ValueKind.BOOL
@@ -194,7 +194,7 @@ Expression = (
 
 @dataclass(frozen=True)
 class Remark:
-    """A comment."""
+    """A comment on a line of its own."""
 
     text: str
 
@@ -266,7 +266,7 @@ class While:
 
 @dataclass(frozen=True)
 class If:
-    """A decision."""
+    """A decision between two blocks, the second of which may be empty."""
 
     test: Expression
     body: tuple[Statement, ...]

@@ -68,6 +68,11 @@ def counted(place: int) -> int:
 
 
 def singular_at(place: int, velocity: str) -> Status:
-    """The mass matrix is singular at the velocity that has this place in v."""
+    """The status that the mass matrix is singular at a velocity.
+
+    Args:
+        place: the index of the velocity in v; it determines the number of the status.
+        velocity: the name of the velocity, for the text and the name of the status.
+    """
     about = f"the mass matrix is singular at {velocity}"
     return Status(counted(place), about, f"SINGULAR_AT_{velocity}")

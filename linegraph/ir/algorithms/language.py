@@ -54,9 +54,13 @@ def ints(size: int) -> Ints:
 
 
 def ratio(x: float, y: float) -> float:
-    """The quotient of which y may be zero: it is infinite then, or not a number, as IEEE 754 has it.
+    """The quotient x / y as IEEE 754 defines it; unlike ``/`` in Python, it allows y = 0.
 
-    Elsewhere ``/`` stands, which Python computes faster.
+    Where y cannot be zero, algorithms use ``/``, which is faster in Python.
+
+    Args:
+        x: the numerator.
+        y: the denominator; if it is zero, the result is infinite, or NaN where x is zero or NaN.
     """
     if y != 0:
         return x / y
@@ -66,7 +70,12 @@ def ratio(x: float, y: float) -> float:
 
 
 def larger(x: float, y: float) -> float:
-    """The larger one of two numbers; the other one if one is not a number, as ``fmax`` of C has it."""
+    """The larger of two numbers, like ``fmax`` in C.
+
+    Args:
+        x: one number; if it is NaN, the result is y.
+        y: the other number; if it is NaN, the result is x.
+    """
     return y if y > x or x != x else x
 
 
@@ -85,12 +94,12 @@ class Failed(Exception):
 
 
 class ModuleAtState(Protocol):
-    """A module of emitted functions, at the arguments that the algorithm's function was called with.
+    """The emitted functions of a module, called with the arguments of the routine being computed.
 
-    The functions write their results into arrays that are given in the order of the results. Arguments by
-    keyword replace those of the call: ``module.constraints(phi, q=at)`` are the constraints at other
-    positions and all else the same. One that reports a status other than OK ends the algorithm with that
-    status.
+    The functions write their results into the arrays passed as positional arguments, in the order of the
+    results; matrices are row-major, in SI units. Keyword arguments replace arguments of the routine:
+    ``module.constraints(phi, q=at)`` evaluates the constraints at other positions, with all other arguments
+    unchanged. If a function returns a status other than OK, the algorithm ends with that status.
 
     Attributes:
         NQ, NV: how many positions and velocities.
@@ -127,47 +136,130 @@ class ModuleAtState(Protocol):
     d_at: tuple[int, ...]
 
     def coordinate_rates(self, qdot: Reals, **given: Reals) -> None:
-        """N(q) v."""
+        """The time derivatives of the positions, qdot = N(q) v.
+
+        Args:
+            qdot: written, NQ entries.
+            given: arguments that replace those of the routine, here and in the methods below.
+        """
 
     def mass_matrix(self, M: Reals, **given: Reals) -> None:
-        """M."""
+        """The mass matrix M(q).
+
+        Args:
+            M: written, NV x NV, row-major, both triangles.
+            given: arguments that replace those of the routine.
+        """
 
     def equations(self, M: Reals, h: Reals, **given: Reals) -> None:
-        """M and h."""
+        """Mass matrix and bias of the equations of motion M vdot + h = Q.
+
+        Args:
+            M: written, NV x NV, row-major, both triangles.
+            h: written, NV generalised forces.
+            given: arguments that replace those of the routine.
+        """
 
     def forward_dynamics(self, a: Reals, *lam: Reals, **given: Reals) -> None:
-        """Accelerations, with constraints multipliers, too."""
+        """The accelerations for given inputs, with constraints also the multipliers.
+
+        Args:
+            a: written, NV entries, the derivatives of v.
+            lam: written, NC multipliers; omitted if the model has no constraints.
+            given: arguments that replace those of the routine.
+        """
 
     def constraints(self, phi: Reals, **given: Reals) -> None:
-        """Gaps."""
+        """The residuals phi of the position constraints, zero where loops are closed.
+
+        Args:
+            phi: written, NP entries.
+            given: arguments that replace those of the routine.
+        """
 
     def constraint_jacobian(self, J: Reals, **given: Reals) -> None:
-        """J."""
+        """The Jacobian of all constraints with respect to the velocities.
+
+        Args:
+            J: written, NC x NV, row-major; the position constraints come first.
+            given: arguments that replace those of the routine.
+        """
 
     def constraint_rates(self, rates: Reals, **given: Reals) -> None:
-        """J v - b."""
+        """The residuals of the constraints at velocity level, J v - b.
+
+        Args:
+            rates: written, NC entries.
+            given: arguments that replace those of the routine.
+        """
 
     def constraint_bias(self, gam: Reals, **given: Reals) -> None:
-        """What J vdot must be."""
+        """The right-hand side gam of the constraints at acceleration level, J vdot = gam.
+
+        Args:
+            gam: written, NC entries.
+            given: arguments that replace those of the routine.
+        """
 
     def constraint_sizes(self, of_phi: Reals, of_v: Reals) -> None:
-        """Sizes that make J a matrix of pure numbers."""
+        """Reference values that make J dimensionless, as J_ij of_v_j / of_phi_i.
+
+        Args:
+            of_phi: written, NC entries in the units of the constraints.
+            of_v: written, NV entries in the units of the velocities.
+        """
 
     def constrained_equations(
         self, M: Reals, f: Reals, J: Reals, gam: Reals, **given: Reals
     ) -> None:
-        """All of M vdot = f + J^T lam, J vdot = gam."""
+        """All terms of the constrained equations of motion M vdot = f + J^T lam, J vdot = gam.
+
+        Args:
+            M: written, NV x NV, row-major, both triangles.
+            f: written, NV entries: the generalised forces except those of the constraints.
+            J: written, NC x NV, row-major.
+            gam: written, NC entries, including stabilisation if the model has any.
+            given: arguments that replace those of the routine.
+        """
 
     def constrained_slopes(
         self, slopes_f: Reals, slopes_gam: Reals, slopes_rates: Reals, drift: Reals, **given: Reals
     ) -> None:
-        """Derivatives of these equations."""
+        """Derivatives of the constrained equations, for the linearization.
+
+        Args:
+            slopes_f: written, NV x (NT + NV + NU), row-major: derivatives of M a - f - J^T lam at given a
+                and lam, with respect to changes of position along the velocities, v and u.
+            slopes_gam: written, NC x (NT + NV + NU), row-major: the same of J a - gam.
+            slopes_rates: written, NC x NT, row-major: derivatives of J v - b by these changes.
+            drift: written, NT x NT, row-major: derivatives of the rates of these changes by them.
+            given: arguments that replace those of the routine.
+        """
 
     def reduction(self, T: Reals, rest: Reals, **given: Reals) -> None:
-        """Velocities and accelerations from the independent ones."""
+        """Velocities and accelerations in terms of the independent ones: v = T w, vdot = T wdot + rest.
+
+        Args:
+            T: written, NV x NI, row-major.
+            rest: written, NV entries.
+            given: arguments that replace those of the routine.
+        """
 
     def loop_equations(self, r: Reals, K: Reals, s: Reals, **given: Reals) -> None:
-        """Residuals of the algebraic loop, their Jacobian and the sizes of their terms."""
+        """Residuals and Jacobian of the algebraic loop.
+
+        Args:
+            r: written, `size` residuals.
+            K: written, `size` x `size`, row-major: the Jacobian of r.
+            s: written, `size` entries: the magnitudes of the terms of each residual, to judge rounding.
+            given: arguments that replace those of the routine; ``loop`` are the unknowns, ``ease`` the
+                series resistance and parallel conductance at each law.
+        """
 
     def then(self, *results: Any, **given: Reals) -> None:
-        """The function that the routine calls last, whose results are its own."""
+        """Call the function named in the routine's details, whose results are those of the routine.
+
+        Args:
+            results: written, the results of the routine in their order.
+            given: arguments that replace those of the routine.
+        """
