@@ -41,7 +41,11 @@ LANGUAGES = tuple(_REGISTER)
 
 
 def known(name: str) -> Language:
-    """One of `LANGUAGES`."""
+    """The language of this name, whose package is imported if necessary.
+
+    Raises:
+        KeyError: there is no such language.
+    """
     found = _REGISTER[name]
     if isinstance(found, Language):
         return found
@@ -50,13 +54,21 @@ def known(name: str) -> Language:
 
 
 def render(module: Module, language: str, options: Options = DEFAULT) -> dict[str, str]:
-    """The files of a module in one of `LANGUAGES`: file name -> text.
+    """The source files of a module in a target language.
 
     Equal modules give equal text, byte for byte. All text is printable ASCII; lines end with a
     newline character alone.
 
+    Args:
+        module: the functions of a model.
+        language: one of `LANGUAGES`.
+        options: the choices that concern the language; others have no effect.
+
+    Returns:
+        The text of each file, by file name.
+
     Raises:
-        NameRefused: something has a name that emitted code cannot carry.
+        NameRefused: something has a name that emitted code cannot use.
         ModelError: a constant is not a finite number.
     """
     naming.validate(module)
@@ -66,9 +78,16 @@ def render(module: Module, language: str, options: Options = DEFAULT) -> dict[st
 def render_tests(
     module: Module, vectors: Vectors, language: str, options: Options = DEFAULT
 ) -> dict[str, str]:
-    """The program that checks those files against golden vectors: file name -> text.
+    """The program that checks the files of `render` against golden vectors.
 
-    Nothing for a language that has no such program.
+    Args:
+        module: the functions of a model.
+        vectors: arguments and independently computed results.
+        language: one of `LANGUAGES`.
+        options: those with which the files are rendered.
+
+    Returns:
+        The text of each file, by file name; empty for a language without such a program.
     """
     tests = known(language).tests
     return dict(tests(module, vectors, options)) if tests else {}

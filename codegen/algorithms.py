@@ -41,7 +41,7 @@ class Algorithms:
     own: dict[str, tuple[Procedure, ...]]
 
     def all(self) -> Iterable[Procedure]:
-        """Every procedure."""
+        """Every procedure, the shared ones first."""
         yield from self.shared
         for procedures in self.own.values():
             yield from procedures

@@ -61,12 +61,25 @@ def constants(module: Module) -> dict[tuple[int, str], tuple[str, list[str]]]:
 
 
 def name_of(module: Module, constant: str) -> str:
-    """The name of a status without the name of the module, for languages that need none."""
+    """The name of a status without the prefix, for languages with namespaces.
+
+    Args:
+        module: the module; its name in capitals is the prefix.
+        constant: the name of the constant as `constants` gives it.
+    """
     return constant.removeprefix(f"{module.name.upper()}_")
 
 
 def of(module: Module, program: Program | Routine) -> list[Status]:
-    """All that a function returns other than 0, with names of constants, by number."""
+    """The statuses other than 0 that a function may return, including those of functions it calls.
+
+    Args:
+        module: the module.
+        program: one of its functions.
+
+    Returns:
+        The statuses with names of constants, sorted by number.
+    """
     programs = {x.name: x for x in module.programs}
     named = constants(module)
     pending, seen = [program], {program.name}

@@ -91,7 +91,12 @@ class Golden(NamedTuple):
 
 
 def golden(module: Module, vectors: Vectors) -> Golden:
-    """What every language's program says of a module's golden vectors."""
+    """The content of the program that checks a module, the same for all languages.
+
+    Args:
+        module: the module.
+        vectors: arguments and independently computed results.
+    """
     statuses = failures.statuses(module)
     return Golden(
         vectors.states,
@@ -112,7 +117,16 @@ def golden(module: Module, vectors: Vectors) -> Golden:
 
 
 def about(module: Module, vectors: Vectors, *, batch: bool = False) -> list[str]:
-    """What is compared with what, and what is not, in plain lines."""
+    """The description of the comparisons, for the head of the program.
+
+    Args:
+        module: the module.
+        vectors: arguments and results, with the functions that are not compared.
+        batch: whether there are functions of many states, which are not compared either.
+
+    Returns:
+        Wrapped lines of plain text.
+    """
     lines = ["Compared are, with where the expected values came from:"]
     for x in vectors.expected:
         lines += _item(f"{x.label}: {x.route}.")

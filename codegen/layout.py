@@ -12,12 +12,22 @@ if TYPE_CHECKING:
 
 
 def extent(argument: Argument, prefix: str = "") -> str:
-    """The size of an array that is read, as a reader expects it: ``prefix + NV`` rather than ``7``."""
+    """The size of an array argument as text: the name of a count such as ``NV``, or else a number.
+
+    Args:
+        argument: an array.
+        prefix: precedes the name of a count.
+    """
     return f"{prefix}{argument.count}" if argument.count else str(argument.size)
 
 
 def shape(result: Result, prefix: str = "") -> list[str]:
-    """The extents of a result, in the same way."""
+    """The extents of a result as texts: names of counts where they have one, or else numbers.
+
+    Args:
+        result: an array of any dimension.
+        prefix: precedes the names of counts.
+    """
     names = result.counts or ("",) * len(result.shape)
     pairs = zip(names, result.shape, strict=True)
     return [f"{prefix}{name}" if name else str(size) for name, size in pairs]

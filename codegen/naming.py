@@ -57,10 +57,15 @@ def stem(text: str) -> str:
 def identifiers(
     texts: Sequence[str], what: str, made: Callable[[str], str] = identifier
 ) -> tuple[str, ...]:
-    """One `identifier`, or `stem`, for each text; `what` says what the texts name, e.g. ``joint``.
+    """An identifier for each of some names, all different.
+
+    Args:
+        texts: the names.
+        what: the kind of object that they name, for messages, such as ``joint``.
+        made: makes an identifier from a name: `identifier` or `stem`.
 
     Raises:
-        NameRefused: two of them come out the same.
+        NameRefused: two names become the same identifier.
     """
     first: dict[str, str] = {}
     for text in texts:

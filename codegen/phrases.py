@@ -66,7 +66,13 @@ class Phrases:
         return self.held(x)[0]
 
     def operand(self, x: Expression, level: int, *, right: bool = False) -> str:
-        """An expression within one of another level; bracketed to the right of one of its own, too."""
+        """An operand as text, in parentheses where precedence requires them.
+
+        Args:
+            x: the operand.
+            level: the precedence of the operator around it, one of `LEVELS`.
+            right: whether it is the right operand, which has parentheses at equal precedence, too.
+        """
         text, own = self.inner(x)
         apart = own < level or (right and own == level)
         if self.bracketed:
@@ -179,8 +185,13 @@ class Phrases:
 def wrapped(line: str, width: int, *, shallowest: int = 0) -> list[str]:
     """A line of code in lines of at most `width`, further ones indented by four more.
 
-    It is broken, if it can be, after commas and before operators, where as few brackets as possible are
-    open, but at least `shallowest`.
+    It is broken after commas and before operators, where as few brackets as possible are open. A line
+    without such a place stays longer.
+
+    Args:
+        line: the line with its indentation.
+        width: the most characters of a line.
+        shallowest: how many brackets must be open at least, 1 for languages in which newlines end statements.
     """
     lines = [line]
     while len(lines[-1]) > width:

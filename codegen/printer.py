@@ -96,7 +96,15 @@ def number(x: Number) -> str:
 
 
 def print_program(program: Program, notation: Syntax) -> PrintedBody:
-    """All lines of a program in one language."""
+    """A program as assignments, checks and expressions of one language.
+
+    Args:
+        program: the program.
+        notation: the syntax of the language.
+
+    Raises:
+        ModelError: a constant is not a finite number.
+    """
     printer = Printer(program, notation)
     lines = printer.assignments(program)
     results = [[printer.text(x) for x in result.entries] for result in program.results]
@@ -104,13 +112,23 @@ def print_program(program: Program, notation: Syntax) -> PrintedBody:
 
 
 class Printer:
-    """Prints the nodes of one program, in order; `known` holds what stands for a node from then on.
+    """Prints the nodes of one program, in order.
 
     Methods call each other only for nodes without a name, whose depth `INLINE_LIMIT` bounds.
+
+    Attributes:
+        known: by index, the names of nodes that have been assigned.
+        read: by index, the texts of symbols that have been read.
+        used: the arguments that have been read since `begin`.
     """
 
     def __init__(self, program: Program, notation: Syntax) -> None:
-        """Nothing is known before the first line."""
+        """Start without any assigned node.
+
+        Args:
+            program: the program whose nodes are printed.
+            notation: the syntax of the language.
+        """
         self.notation = notation
         self.mixed = _MIXED if notation.bracketed else _BARE
         self.turned = program.turned
@@ -208,6 +226,13 @@ class Printer:
         """An operation whose second operand is a number.
 
         ``x + -2`` is ``x - 2`` and ``x * 2`` is ``2 * x``, to the last bit.
+
+        Args:
+            left: the text of the first operand.
+            first: how tightly this text holds together.
+            sign: the operator, with the spaces around it.
+            level: the precedence of the operator.
+            b: the number.
         """
         if first < level or first in self.mixed[level]:
             left = f"({left})"

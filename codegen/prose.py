@@ -47,12 +47,22 @@ def plain(text: str) -> str:
 
 
 def paragraph(text: str, indent: int = 0) -> list[str]:
-    """The text wrapped; lines after the first are indented by so many spaces."""
+    """A text as lines of printable ASCII, wrapped at `WIDTH` characters.
+
+    Args:
+        text: any text.
+        indent: how many spaces precede lines after the first.
+    """
     return textwrap.wrap(plain(text), WIDTH, subsequent_indent=" " * indent, break_on_hyphens=False)
 
 
 def table(quantities: Sequence[Quantity], sizes: Sequence[int] = ()) -> list[str]:
-    """One row for each: index, counted in sizes, name, value where there is one, unit and description."""
+    """A table of quantities: index, name, value if there is one, unit and description.
+
+    Args:
+        quantities: one for each row.
+        sizes: how many indices each row takes; empty if each takes one.
+    """
     places = [sum(sizes[:k]) if sizes else k for k in range(len(quantities))]
     rows = [
         [

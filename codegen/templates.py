@@ -18,7 +18,12 @@ def folder() -> Path:
 
 
 def fill(template: str, **texts: object) -> str:
-    """The text of a file: `template`, a path below `folder`, with all its places filled."""
+    """The text of a file, made from a template.
+
+    Args:
+        template: its path relative to `folder`.
+        texts: the values of all variables of the template.
+    """
     return _environment().get_template(template).render(texts)
 
 

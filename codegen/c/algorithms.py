@@ -57,7 +57,13 @@ class CAlgorithms:
     """Prints the procedures of a module as functions of C."""
 
     def __init__(self, module: Module, algorithms: Algorithms, real: str) -> None:
-        """`real` is the type of numbers, for which bounds of rounding are chosen."""
+        """Collect the names of statuses and counts.
+
+        Args:
+            module: the module; its name is the prefix of all functions and macros.
+            algorithms: its algorithms.
+            real: ``double`` or ``float``; the bounds of rounding depend on it.
+        """
         self.module, self.algorithms, self.real = module, algorithms, real
         self.macro = module.name.upper()
         self.ok = f"{self.macro}_{failures.OK}"
@@ -78,7 +84,13 @@ class CAlgorithms:
         return [_CProcedure(self, None, x, frozenset()).helper() for x in self.algorithms.shared]
 
     def routine(self, routine: Routine, head: str, name: str) -> list[Definition]:
-        """A routine's function, after those of its own procedures."""
+        """The function of a routine, preceded by those of the procedures that only it uses.
+
+        Args:
+            routine: the routine.
+            head: the text of its head, without the opening brace.
+            name: the name of its function, without the prefix.
+        """
         *others, body = self.algorithms.own[routine.name]
         own = frozenset(x.name for x in others)
         made = [_CProcedure(self, routine, x, own).helper() for x in others]

@@ -80,7 +80,12 @@ class Batch:
 
 
 def functions(module: Module, statuses: dict[str, dict[int, str]]) -> list[Batch]:
-    """A function of many states for each of `NAMES` that needs no decision while it runs."""
+    """The functions of many states: those of `NAMES` that report no status and call no other function.
+
+    Args:
+        module: the module.
+        statuses: for each function of the module, the meaning of each status; empty if it has none.
+    """
     return [
         _made(module, program, statuses)
         for program in module.programs
@@ -89,7 +94,15 @@ def functions(module: Module, statuses: dict[str, dict[int, str]]) -> list[Batch
 
 
 def left_out(module: Module, batches: Sequence[Batch]) -> list[str]:
-    """What the header says of those of `NAMES` that cannot be had for many states."""
+    """The lines of the header that list the functions of `NAMES` without a version for many states.
+
+    Args:
+        module: the module.
+        batches: its functions of many states.
+
+    Returns:
+        Wrapped lines of plain text; none if nothing is missing.
+    """
     made = {batch.name for batch in batches}
     names = [x.name for x in module.programs if _wanted(x) and x.name not in made]
     if not names:
@@ -99,7 +112,15 @@ def left_out(module: Module, batches: Sequence[Batch]) -> list[str]:
 
 
 def elementwise(module: Module, wide: Sequence[Definition]) -> list[tuple[str, str, int]]:
-    """The functions, other than sine and cosine, that are called lane by lane: name, C's name, arity."""
+    """The elementary functions, other than sine and cosine, that are evaluated lane by lane.
+
+    Args:
+        module: the module.
+        wide: its functions that work on vector registers.
+
+    Returns:
+        For each elementary function: its name in `ARITY`, its name in C and its number of arguments.
+    """
     called = frozenset[str]().union(*(definition.frame.calls for definition in wide))
     return [
         (name, straight_line.function(module, name), arity)

@@ -52,7 +52,14 @@ def signature(
     *,
     core: bool = False,
 ) -> str:
-    """The head of a public function, or of the function behind it that does the work."""
+    """The head of a function of C, without a semicolon or brace.
+
+    Args:
+        module: the module.
+        program: the function.
+        statuses: for each function of the module, the meaning of each status; empty if it has none.
+        core: whether it is the internal function that does the work of one that reports a status.
+    """
     parts = [argument(module, x) for x in program.arguments]
     parts += [result(module, x) for x in program.results]
     returned = "int" if statuses[program.name] else "void"
@@ -62,13 +69,24 @@ def signature(
 
 
 def head(start: str, parts: Sequence[str]) -> str:
-    """A function's head: its parameters in one line if that is not long, else one below the other."""
+    """The head of a function: parameters on one line if it is short enough, else one per line.
+
+    Args:
+        start: the text up to and including the opening parenthesis.
+        parts: the declarations of the parameters; ``void`` is written if there are none.
+    """
     line = f"{start}{', '.join(parts) or 'void'})"
     return line if len(line) < _WIDTH else start + f",\n{' ' * len(start)}".join(parts) + ")"
 
 
 def argument(module: Module, given: Argument, number: str = "double") -> str:
-    """A parameter that is read: an array of numbers, the parameters or the time."""
+    """The declaration of a parameter that is read.
+
+    Args:
+        module: the module; array sizes are macros with its name as prefix.
+        given: an array of numbers, the parameters of the model, or the time.
+        number: the type of the array's entries.
+    """
     if given.size is not None:
         size = layout.extent(given, f"{module.name.upper()}_")
         return f"const {number} {given.name}[{size if given.size else 1}]"
@@ -78,7 +96,13 @@ def argument(module: Module, given: Argument, number: str = "double") -> str:
 
 
 def result(module: Module, given: Result, number: str = "double") -> str:
-    """A parameter that is written; nothing else that the function reads or writes may overlap it."""
+    """The declaration of a parameter that is written, which must not alias any other one.
+
+    Args:
+        module: the module; array sizes are macros with its name as prefix.
+        given: a result; a matrix is a row-major array of one dimension.
+        number: the type of the array's entries.
+    """
     macro = module.name.upper()
     size = " * ".join(layout.shape(given, f"{macro}_"))
     return f"{number} {given.name}[{macro}_RESTRICT {size if all(given.shape) else 1}]"

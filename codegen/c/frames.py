@@ -43,7 +43,12 @@ class StackFrame:
     calls: set[str] = field(default_factory=set)
 
     def add(self, number: str, count: int = 1) -> None:
-        """Note variables: of the type ``double`` or of registers."""
+        """Add variables to the record.
+
+        Args:
+            number: their type; any type other than ``double`` is that of a vector register.
+            count: how many there are.
+        """
         if number == "double":
             self.doubles += count
         else:

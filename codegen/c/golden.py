@@ -18,7 +18,16 @@ if TYPE_CHECKING:
 
 
 def render(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
-    """The program that checks what `source.render` writes of a module: file name -> text."""
+    """The program in C that checks the files of `source.render` against golden vectors.
+
+    Args:
+        module: the functions of a model.
+        vectors: arguments and independently computed results.
+        options: those with which the files are rendered.
+
+    Returns:
+        The text of the one file, by file name.
+    """
     file, module = module.name, replace(module, name=options.prefix or module.name)
     found = golden.golden(module, vectors)
     sizes = {x.key: x.size for x in found.given}

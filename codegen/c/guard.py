@@ -36,7 +36,15 @@ def reads_parameters(module: Module) -> bool:
 def definition(
     module: Module, program: Program | Routine, statuses: dict[str, dict[int, str]]
 ) -> Definition:
-    """A function that reports a status."""
+    """The public function that reports a status, around the internal one that computes.
+
+    It rejects arguments that are not finite, and writes the results only if all are finite.
+
+    Args:
+        module: the module.
+        program: the function.
+        statuses: for each function of the module, the meaning of each status; empty if it has none.
+    """
     lines = _lines(module, program)
     frame = StackFrame(
         doubles=sum(math.prod(result.shape) for result in program.results),

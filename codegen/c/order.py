@@ -51,7 +51,12 @@ Item = NamedStep | Entry | Guard
 
 
 def arranged(program: Program, forced: Iterable[Node]) -> list[Item]:
-    """All lines of a program in order; the nodes `forced` get a name in any case."""
+    """The lines of a program in the order in which C computes them.
+
+    Args:
+        program: the program.
+        forced: nodes that are assigned to variables in addition to the steps of the program.
+    """
     named = {node.index: node for node in program.steps}
     named |= {node.index: node for node in forced}
     steps = {

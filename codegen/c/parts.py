@@ -78,9 +78,13 @@ def cut(items: Sequence[Item]) -> list[CodePart]:
 
 
 def places(parts: Sequence[CodePart], kind: Callable[[int], str]) -> WorkingPlaces:
-    """A place for every value that goes from part to part, of its kind.
+    """Assign every value that is passed between parts a place in a working array.
 
-    A part writes no place that it reads, so that the order of its lines does not matter for places.
+    No part writes to a place that it reads, so the order of lines within a part is free.
+
+    Args:
+        parts: the parts of a function, in order.
+        kind: the number type of a node, by its index; each type has an array of its own.
     """
     last = {index: number for number, part in enumerate(parts) for index in part.given}
     free: dict[str, list[int]] = {}

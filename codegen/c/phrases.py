@@ -30,7 +30,14 @@ class CPhrases(Phrases):
     words: ClassVar = {"and": "&&", "or": "||"}
 
     def __init__(self, module: Module, real: str, routine: str, own: frozenset[str]) -> None:
-        """Procedures of `own` belong to the routine, and are called after it."""
+        """Take names and bounds of rounding from the module and its number type.
+
+        Args:
+            module: the module; its name is the prefix of all functions and macros.
+            real: ``double`` or ``float``.
+            routine: the name of the routine being printed; empty for shared procedures.
+            own: the procedures that belong to this routine, whose names contain that of the routine.
+        """
         super().__init__(FLOAT if real == "float" else DOUBLE)
         self.prefix, self.macro = module.name, module.name.upper()
         self.routine, self.own = routine, own
@@ -102,5 +109,5 @@ class CPhrases(Phrases):
         return str(int(value)) if isinstance(value, bool) else super().literal(value)
 
     def infinity(self) -> str:
-        """That of <math.h>."""
+        """The macro of <math.h> for infinity."""
         return "HUGE_VAL"

@@ -29,15 +29,26 @@ _WORDS = re.compile(
 
 
 def tolerance(fraction: float, real: str) -> float:
-    """A fraction that is rounding of doubles, for the numbers in use."""
+    """A relative bound of rounding, for the numbers in use.
+
+    Args:
+        fraction: the bound for doubles.
+        real: ``double`` or ``float``.
+    """
     return fraction * _COARSER if real == "float" else fraction
 
 
 def written(text: str, real: str) -> str:
-    """C for doubles as it is for these numbers; comments and strings stay.
+    """C text written for doubles, converted to another number type.
+
+    Types, numbers and functions of <math.h> are replaced; comments and strings are kept.
+
+    Args:
+        text: C for doubles.
+        real: ``double`` or ``float``.
 
     Raises:
-        ModelError: a number is no float.
+        ModelError: a number cannot be represented as a normal float.
 
     Example:
         >>> written("const double x = 0.1 * sin(y); /* double */", "float")

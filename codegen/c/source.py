@@ -33,7 +33,19 @@ if TYPE_CHECKING:
 
 
 def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
-    """The header and the source of a module."""
+    """The header and the source of a module, with the files of its package if there is one.
+
+    Args:
+        module: the functions of a model; file names begin with its name.
+        options: the choices for C.
+
+    Returns:
+        The text of each file, by its path relative to the output folder.
+
+    Raises:
+        NameRefused: the prefix, or a name with this prefix, cannot be used.
+        ModelError: a number cannot be represented in the chosen type.
+    """
     file = module.name
     if options.prefix is not None:
         naming.validate_prefix(options.prefix)

@@ -50,13 +50,23 @@ def bounds(frames: Mapping[str, StackFrame], real: str = "double") -> dict[str, 
 
 
 def variables(frame: StackFrame, real: str = "double") -> int:
-    """Bytes of a function's variables."""
+    """The size of a function's variables (bytes).
+
+    Args:
+        frame: the function's record.
+        real: ``double`` or ``float``.
+    """
     numbers = frame.doubles * _BYTES[real] + frame.ints * _INT
     return numbers + frame.pointers * _WORD + frame.registers * _REGISTER
 
 
 def own(frame: StackFrame, real: str = "double") -> int:
-    """Bytes of one function alone."""
+    """The stack that one function takes without those it calls (bytes), an upper bound.
+
+    Args:
+        frame: the function's record.
+        real: ``double`` or ``float``.
+    """
     arguments = _WORD * max(frame.parameters, 1)
     if frame.wide:
         arguments += 4 * _REGISTER  # registers are kept in places of their alignment

@@ -49,7 +49,12 @@ class NumberKind:
 
 
 def function(module: Module, name: str) -> str:
-    """What C calls a function of `ARITY`: that of <math.h>, or the file's own, after the module."""
+    """The name in C of an elementary function, from <math.h> or defined in the file.
+
+    Args:
+        module: the module; its name is the prefix of functions that the file defines.
+        name: one of `ARITY`.
+    """
     if name in OWN:
         return f"{module.name}_{name}_of"
     return "fabs" if name == "abs" else name
@@ -58,7 +63,14 @@ def function(module: Module, name: str) -> str:
 def define(
     module: Module, program: Program, statuses: dict[str, dict[int, str]], kind: NumberKind
 ) -> list[Definition]:
-    """A function, after the parts it calls if it is long."""
+    """The function of a program, preceded by its parts if it is long.
+
+    Args:
+        module: the module.
+        program: the function.
+        statuses: for each function of the module, the meaning of each status; empty if it has none.
+        kind: the type of its numbers.
+    """
     return _Writer(module, program, statuses, kind).definitions()
 
 

@@ -55,7 +55,13 @@ class PythonPhrases(Phrases):
     """Expressions of Python; names of counts stand for constants that equal them."""
 
     def __init__(self, routine: str, own: frozenset[str], aliases: Mapping[str, str]) -> None:
-        """Procedures of `own` belong to the routine; `aliases` are the counts that constants equal."""
+        """Use the bounds of rounding of doubles.
+
+        Args:
+            routine: the name of the routine being printed; empty for shared procedures.
+            own: the procedures that belong to this routine, whose names contain that of the routine.
+            aliases: by the name of a constant, the count that it equals.
+        """
         super().__init__(DOUBLE)
         self.routine, self.own, self.aliases = routine, own, aliases
 
@@ -91,7 +97,14 @@ class PythonAlgorithms:
     """Prints the procedures of a module as functions of Python."""
 
     def __init__(self, module: Module, algorithms: Algorithms) -> None:
-        """Functions that report no status are called so that a division by zero is as in C."""
+        """Determine which functions report a status.
+
+        The others are called so that a division by zero gives the same as in C.
+
+        Args:
+            module: the module.
+            algorithms: its algorithms.
+        """
         self.module, self.algorithms = module, algorithms
         self.fails = {name for name, found in failures.statuses(module).items() if found}
 

@@ -17,7 +17,16 @@ if TYPE_CHECKING:
 
 
 def render(module: Module, vectors: Vectors, options: Options) -> dict[str, str]:
-    """The program that checks what `module.render` writes: file name -> text."""
+    """The program in Python that checks the file of `module.render` against golden vectors.
+
+    Args:
+        module: the functions of a model.
+        vectors: arguments and independently computed results.
+        options: not used.
+
+    Returns:
+        The text of the one file, by file name.
+    """
     del options  # functions of many states are there in any case
     found = golden.golden(module, vectors)
     scales = (1 + found.loud,) if found.loud else ()

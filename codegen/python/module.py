@@ -28,7 +28,15 @@ _WIDTH = 96
 
 
 def render(module: Module, options: Options = DEFAULT) -> dict[str, str]:
-    """The one file of a module; no option concerns it."""
+    """The Python source of a module.
+
+    Args:
+        module: the functions of a model.
+        options: not used.
+
+    Returns:
+        The text of the one file, by file name.
+    """
     statuses = failures.statuses(module)
     notation = _notation(module)
     printer = PythonAlgorithms(module, algorithms.of(module))
