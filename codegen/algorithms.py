@@ -1,4 +1,4 @@
-"""The algorithms of a module, bound to it: what every language prints of them.
+"""The algorithms of a module, bound to it, as all languages print them.
 
 Procedures that call none of the module's functions are shared by all routines; the others belong to one
 routine, whose arguments they pass on.
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from linegraph.ir.statements import Procedure
 
 CONSTANTS = "c"
-"""The argument that is no input: what `prepare` returned. It may be infinite where a check tells of it."""
+"""The argument that holds the constants of `prepare`; it may be infinite where a check detects that."""
 
 BATCHED = ("after_dynamics", "rhs")
 """Algorithms that only call others, so that they take many states at once where those do."""
@@ -30,7 +30,7 @@ BATCHED = ("after_dynamics", "rhs")
 
 @dataclass(frozen=True)
 class Algorithms:
-    """What is printed of a module's algorithms.
+    """The procedures of a module's algorithms, in the order in which they are printed.
 
     Attributes:
         shared: the procedures that routines share, each after those that it calls.

@@ -1,4 +1,4 @@
-"""What of a program differs from state to state."""
+"""Determines which values of a program differ from state to state."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Statuses: what functions report where they cannot compute, and the names of these reports.
+"""The statuses that each function may return, and the names of their constants.
 
 A function that reports a status at all reports arguments and results that are not finite, too.
 """
@@ -20,7 +20,7 @@ OK = "OK"
 
 
 def own(program: Program | Routine) -> tuple[Status, ...]:
-    """What a function itself returns, not what it passes on."""
+    """The statuses of a function itself, without those of the functions it calls."""
     if isinstance(program, Routine):
         found = program.statuses
     else:

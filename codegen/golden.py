@@ -1,4 +1,4 @@
-"""Golden vectors as rows of a program that checks emitted functions: what such programs have in common.
+"""Golden vectors as rows of a program that checks emitted functions, for all languages alike.
 
 Each language fills a template with these. The program stands beside what it checks and needs nothing else:
 in C no library but <math.h> and, unless it is told otherwise, <stdio.h>; in Python NumPy and pytest.

@@ -1,4 +1,4 @@
-"""What a language is to all others."""
+"""The interface between code generation and a target language."""
 
 from __future__ import annotations
 

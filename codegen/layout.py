@@ -1,4 +1,4 @@
-"""What the files of all languages say alike: sizes by name, and the head."""
+"""Text common to the files of all languages: names of sizes, and the head."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def shape(result: Result, prefix: str = "") -> list[str]:
 
 
 def head(module: Module) -> list[str]:
-    """What the head of a file says of this module, in plain lines: description and quantities."""
+    """The head of a file in plain lines: the module's description and its quantities."""
     lines: list[str] = []
     for text in module.about:
         lines += [*prose.paragraph(text), ""]

@@ -1,4 +1,4 @@
-"""Names: what can be an identifier in every emitted language, and making one from any text."""
+"""Names: checks that they are identifiers in every target language, and makes such from any text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a language is to write a module, where there is a choice."""
+"""The options of code generation."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 TRIG = ("libm", "inline")
-"""Whose sine and cosine C calls: the library's, or those of the emitted file itself."""
+"""The sine and cosine that C calls: those of the library or of the emitted file itself."""
 
 REAL = ("double", "float")
 """The type of C's numbers."""
@@ -40,7 +40,7 @@ class Options:
     report: bool = False
 
     def __post_init__(self) -> None:
-        """Raises `ModelError` for what is no choice."""
+        """Validate the values; raises `ModelError` for an unknown or contradictory choice."""
         for what, known in (("trig", TRIG), ("real", REAL)):
             value = getattr(self, what)
             if value not in known:

@@ -1,4 +1,4 @@
-"""Expressions of algorithms as text: what languages with infix operators have in common.
+"""Expressions of algorithms as text, for languages with infix operators.
 
 A language derives from `Phrases` and says what it writes differently: its words, and how it reads an entry
 of an array or calls a function. Parentheses stand where the grouping needs them, or wherever operators of
@@ -131,7 +131,7 @@ class Phrases:
         return f"{a} if {test} else {b}", CHOICE
 
     def intrinsic(self, x: Intrinsic) -> tuple[str, int]:
-        """A call of what every language has."""
+        """A call of a function that every language has."""
         return f"{x.name}({', '.join(map(self.text, x.arguments))})", ATOM
 
     def invocation(self, x: Invocation) -> str:
@@ -144,7 +144,7 @@ class Phrases:
     # ---- words
 
     def procedure(self, x: Invocation) -> str:
-        """What a procedure is called."""
+        """The name of a procedure in the emitted code."""
         return x.procedure
 
     def part(self, x: ArrayPart) -> str:

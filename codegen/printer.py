@@ -29,7 +29,7 @@ _INFIX = {
     MUL: (" * ", _PRODUCT, True),
     DIV: (" / ", _PRODUCT, False),
 }
-"""What stands between the operands, how tightly it holds, and whether they may change places."""
+"""For each infix operation: its operator, its precedence, and whether it commutes."""
 
 
 _BARE: dict[int, tuple[int, ...]] = {_SIGNED: (), _SUM: (), _PRODUCT: ()}
@@ -39,7 +39,7 @@ _MIXED: dict[int, tuple[int, ...]] = {_SIGNED: (_SUM, _PRODUCT), _SUM: (_PRODUCT
 
 @dataclass(frozen=True)
 class Syntax:
-    """How a language writes what languages write differently.
+    """The differences in syntax between target languages.
 
     Attributes:
         before: what stands before the name in an assignment, indentation included.
@@ -169,7 +169,7 @@ class Printer:
         return self.notation.check(self.text(check.node), self.bound(check), check)
 
     def bound(self, check: Check) -> str:
-        """What must be exceeded."""
+        """The text of the bound that a check must exceed."""
         if check.fraction is None:
             return self.text(check.bound)
         fraction = self.notation.tolerance(check.fraction)
@@ -259,7 +259,7 @@ class Printer:
         return f"-({text})" if apart else f"-{text}", _SIGNED
 
     def symbol(self, node: Node) -> str:
-        """What is read: an element of an array, a parameter, or the time."""
+        """The text that reads an input: an element of an array, a parameter, or the time."""
         found = self.read.get(node.index)
         if found is not None:
             return found

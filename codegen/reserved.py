@@ -28,7 +28,7 @@ _PYTHON = """
     lambda nonlocal pass raise with yield
 """
 KEYWORDS = _words(_C, _CPP, _PYTHON)
-"""What C, C++ and Python keep for themselves."""
+"""Reserved words of C, C++ and Python."""
 
 _MACROS = """
     alloca BIG_ENDIAN BYTE_ORDER DOMAIN fpclassify i386 INFINITY iscanonical iseqsig isfinite
@@ -37,7 +37,7 @@ _MACROS = """
     NULL OVERFLOW PDP_ENDIAN PLOSS RAND_MAX signbit SING TLOSS UNDERFLOW unix
 """
 MACROS = _words(_MACROS)
-"""What the compiler or <math.h>, with all that it includes, replaces on some platform."""
+"""Macros that the compiler or <math.h>, with all that it includes, defines on some platform."""
 
 MACRO_FAMILIES = re.compile(
     r"(FP_|HUGE_VAL|MATH_ERR|SNAN|FD_|EXIT_|MB_CUR_|W[A-Z]+$|[bl]e(16|32|64)toh$|hto[bl]e(16|32|64)$"
@@ -91,10 +91,10 @@ On systems that take capitals for small letters a file ``servo.h`` is found as `
 HEADS = _words(
     "H HIGH1 HIGH2 HIGH4 LANES LOW1 LOW2 LOW4 PART RESTRICT SWAP", "TEST_NO_STDIO TEST_REAL"
 )
-"""What macros of the emitted C files are called, after the model's name."""
+"""Names of macros of the emitted C files, without the prefix."""
 
 CLASS = _words("replace self")
-"""What the emitted Python class `Parameters` has for its own use."""
+"""Names that the emitted Python class `Parameters` uses itself."""
 
 _OWN = """
     all angle angles any bool check common cosines count DEFAULT_PARAMETERS default_parameters
@@ -107,4 +107,4 @@ _MATH = """
     ldexp lgamma log log10 modf pow signgam sin sinh sqrt tanh tgamma y0 y1 yn
 """
 CODE = _words(_OWN, _MATH)
-"""What the emitted files define or use themselves, and functions of <math.h>."""
+"""Names that the emitted files define or use themselves, and functions of <math.h>."""

@@ -287,7 +287,7 @@ class _CProcedure:
                 yield f"    {line}"
 
     def span(self, x: For) -> str:
-        """What stands in the brackets of a loop."""
+        """The text between the parentheses of a loop."""
         start, name = self.phrases.text(x.start), x.name
         stop = self.phrases.operand(x.stop, COMPARISON)
         relation = f"{name} < {stop}" if x.step > 0 else f"{name} > {stop}"
@@ -305,7 +305,7 @@ class _CProcedure:
         return f"{target} {x.operator}= {self.phrases.text(x.value)};"
 
     def called(self, x: Use | Perform) -> Iterator[str]:
-        """A call, and what follows where its status is not OK."""
+        """A call, with the lines for a status other than OK."""
         call = self.call(x)
         if not self.may_fail(x):
             yield f"{call};"

@@ -25,7 +25,7 @@ _WAVES = ("sin", "cos")
 
 
 class Angles:
-    """Where sine and cosine of each angle stand.
+    """The places of the sine and cosine of each angle.
 
     Attributes:
         early: the angles known from the start, in the order of their places.
@@ -61,7 +61,7 @@ class Angles:
         return node.op in _WAVES and node.a.index in self._place
 
     def place(self, node: Node) -> int:
-        """Where a sine or cosine stands."""
+        """The place of a sine or cosine."""
         return self._place[node.a.index]
 
     def comes_first(self, node: Node) -> bool:

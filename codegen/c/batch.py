@@ -63,7 +63,7 @@ class Batch:
 
     @property
     def frame(self) -> StackFrame:
-        """What the function of many states keeps."""
+        """The stack frame of the function of many states."""
         return StackFrame(
             registers=sum(max(rows.size, 1) for rows in (*self.given, *self.found)),
             ints=1,
@@ -74,7 +74,7 @@ class Batch:
 
     @property
     def wide(self) -> str:
-        """What the function of registers is called with."""
+        """The arguments with which the function on vector registers is called."""
         rows = {x.name for x in (*self.given, *self.found)}
         return ", ".join(f"wide_{x}" if x in rows else x for x in self.one)
 

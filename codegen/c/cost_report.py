@@ -1,4 +1,4 @@
-"""What each emitted function costs, as a table for the head of the file."""
+"""The cost of each emitted function, as a table for the head of the file."""
 
 from __future__ import annotations
 

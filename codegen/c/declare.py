@@ -1,4 +1,4 @@
-"""What C text is made of: comments, strings, the heads of functions."""
+"""Elements of C text: comments, strings and the heads of functions."""
 
 from __future__ import annotations
 

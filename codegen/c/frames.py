@@ -84,7 +84,7 @@ FINITE = ("not_finite", "parameters_not_finite", "copy")
 
 
 def of_helpers() -> dict[str, StackFrame]:
-    """The functions that stand in templates."""
+    """The records of the functions written in templates, by name."""
     found = {
         "not_finite": StackFrame(ints=2, parameters=2, statements=5),
         "parameters_not_finite": StackFrame(ints=1, parameters=1),

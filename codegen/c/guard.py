@@ -92,7 +92,7 @@ def _lines(module: Module, program: Program | Routine) -> list[str]:
 
 
 def _counted(counts: list[str]) -> list[str]:
-    """The lines that count what is not finite."""
+    """The lines that count arguments that are not finite."""
     found = [count for count in counts if count] or ["0"]
     return [
         f"    {'int amiss =' if place == 0 else 'amiss +='} {count};"

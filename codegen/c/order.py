@@ -82,7 +82,7 @@ def paired(live: Iterable[Node]) -> list[Node]:
 
 
 def _read_by(node: Node, named: dict[int, Node]) -> tuple[Sequence[int], int]:
-    """What the operation of a node reads, and how many operations its line has."""
+    """The named nodes that a node's operation reads, and the number of operations in its line."""
     return _reads((node.a, node.b), named, 1)
 
 

@@ -40,7 +40,7 @@ _TARGETS = frozenset(
         "PACKAGE",
     )
 )
-"""What targets of CMake cannot be called, and the mathematics library."""
+"""Reserved names of CMake targets, and the name of the mathematics library."""
 
 _KEYWORD = re.compile(r"[A-Z_]+")
 """How keywords of CMake's commands are written: EXPORT, TARGETS, FILE, STATIC and many more."""

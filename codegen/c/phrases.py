@@ -43,7 +43,7 @@ class CPhrases(Phrases):
         self.routine, self.own = routine, own
 
     def condition(self, x: Expression) -> str:
-        """A text that is true or false, where one stands."""
+        """An expression as a condition in C."""
         return self.test(x)[0]
 
     def test(self, x: Expression) -> tuple[str, int]:
@@ -53,7 +53,7 @@ class CPhrases(Phrases):
         return super().held(x)
 
     def held(self, x: Expression) -> tuple[str, int]:
-        """A value: what is true is 1."""
+        """An expression as a value; a condition becomes 1 or 0."""
         if x.kind is ValueKind.BOOL and isinstance(x, Operation | Not):
             return f"({self.condition(x)}) ? 1 : 0", CHOICE
         return super().held(x)

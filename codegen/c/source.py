@@ -114,7 +114,7 @@ def _define(
     kind: straight_line.NumberKind,
     printer: CAlgorithms,
 ) -> list[Definition]:
-    """A function, after what it is made of."""
+    """The definition of a function, preceded by those of its parts."""
     core = bool(statuses[program.name]) and not program.handed
     name, head = program.name, declare.signature(module, program, statuses, core=core)
     if program.handed:
@@ -156,7 +156,7 @@ def _deepest(module: Module, taken: Mapping[str, int], batches: Sequence[batch.B
 
 
 def _needs(module: Module, functions: Sequence[Definition], wide: Sequence[Definition]) -> set[str]:
-    """What stands at the head of the source only where some function uses it."""
+    """The optional parts of the source's head that some function uses."""
     called = frozenset[str]().union(*(x.frame.calls for x in (*functions, *wide)))
     marks = {
         **{own: f"{own}_of" for own in straight_line.OWN},

@@ -33,7 +33,7 @@ OWN = ("sign", "min", "max")
 
 @dataclass(frozen=True)
 class NumberKind:
-    """What the numbers of a function are.
+    """The type of the numbers in a function.
 
     Attributes:
         number: their type.
@@ -153,7 +153,7 @@ class _Writer:
         return [*made, Definition(self.name(), self.signature(), lines, self.frame)]
 
     def name(self) -> str:
-        """What the function itself is called, after the module."""
+        """The name of the function itself, without the prefix."""
         if self.kind.wide:
             return f"{self.program.name}_lanes"
         return self.program.name + declare.CORE * bool(self.statuses[self.program.name])
@@ -235,7 +235,7 @@ class _Writer:
         count: dict[str, int],
         arrays: dict[str, str],
     ) -> tuple[list[str], list[str]]:
-        """What a part is given: its names, and how they are declared."""
+        """The parameters of a part: their names and their declarations."""
         written = {item.result for item in part.items if isinstance(item, Entry)}
         declared = {x.name: self.argument(x) for x in self.program.arguments if x.name in read}
         for call in self.program.calls:
@@ -358,7 +358,7 @@ class _Writer:
 
 
 def _given(call: Call) -> str:
-    """What another function is called with."""
+    """The arguments of a call of another function."""
     return ", ".join((*call.arguments, *(local.name for local in call.results)))
 
 

@@ -276,7 +276,7 @@ _SMOOTH = ("sin", "cos", "tan", "atan", "sinh", "cosh", "tanh", "exp")
 
 
 def analytic(module: Module) -> set[str]:
-    """The functions whose results have derivatives, so that complex arguments make sense.
+    """The functions whose results are differentiable, so that complex arguments make sense.
 
     From their arguments they calculate with sums, products, quotients and smooth functions alone, and so do
     those that they call.

@@ -65,7 +65,7 @@ _OPERATORS: dict[str, Callable[[Any, Any], Any]] = {
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What algorithms are bound to.
+    """The module to which algorithms are bound.
 
     Attributes:
         programs: all functions of the module by name.
@@ -101,7 +101,7 @@ def bound(routine: Routine, around: Surroundings) -> tuple[Procedure, ...]:
 
 
 class _Binder:
-    """Decides what one routine's model decides."""
+    """Evaluates everything in an algorithm that depends only on the model of one routine."""
 
     def __init__(self, routine: Routine, around: Surroundings) -> None:
         self.routine, self.around = routine, around
@@ -114,7 +114,7 @@ class _Binder:
         return tuple(x for statement in body for x in self.statement(statement))
 
     def statement(self, x: Statement) -> Iterable[Statement]:
-        """What a statement becomes: itself, another one, or those of a branch that is always taken."""
+        """The bound form of a statement; a branch that is always taken replaces its `If`."""
         match x:
             case If():
                 test = self.expression(x.test)

@@ -1,4 +1,4 @@
-"""The elementary functions: the one register of what algebras, formulas and languages know."""
+"""The elementary functions that all algebras, formulas and target languages support."""
 
 from __future__ import annotations
 

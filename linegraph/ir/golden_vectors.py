@@ -1,4 +1,4 @@
-"""Golden vectors as data: states, and what emitted functions must return there."""
+"""Golden vectors as data: states, and the expected results of emitted functions at these states."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Values:
 
 
 CONSTANTS = "c"
-"""The key of an argument that is what `prepare` makes of the parameters."""
+"""The key of the argument that holds the constants computed by `prepare`."""
 
 RETURNED = "returned."
 """How the key of an argument begins that is a result of the function called before."""
@@ -43,7 +43,7 @@ RETURNED = "returned."
 
 @dataclass(frozen=True)
 class Then:
-    """A function that is called with what another one has returned.
+    """A function that is called with the results of another one.
 
     Attributes:
         function: its name.
@@ -59,7 +59,7 @@ class Then:
 
 @dataclass(frozen=True)
 class Expected:
-    """What one function must return.
+    """The expected results of one function.
 
     Attributes:
         label: what the comparison is called: the function's name, or that and what is special.

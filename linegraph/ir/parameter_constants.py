@@ -1,4 +1,4 @@
-"""What depends on parameters alone, and programs rearranged so that as much as can be does.
+"""Rearranges programs so that as much as possible depends on parameters alone.
 
 With k for constants, of which parameters or numbers are all they depend on:
 
@@ -72,7 +72,7 @@ class Restructured:
         return self._product(self._dag.multiply(x, y), self._dag.multiply(k, m))
 
     def _freed(self, original: Node) -> tuple[Operand, Operand]:
-        """What an operand has become; its factors, if nothing else needs it."""
+        """The new operand for an old one, split into factors if nothing else uses it."""
         x = self._of(original)
         if isinstance(x, Node) and self._uses[original.index] == 1:
             return self._factors(x)
@@ -134,7 +134,7 @@ class Restructured:
 
 
 def ends(program: Program) -> list[Operand]:
-    """What a program has to know: entries of results and what is checked."""
+    """The values that a program must compute: entries of results and both sides of checks."""
     entries = [entry for result in program.results for entry in result.entries]
     return [*entries, *(x for check in program.checks for x in (check.node, check.bound))]
 

@@ -34,7 +34,7 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Argument:
-    """What a function is given: an array of `size` numbers, ``p`` (the parameters) or ``t`` (a number).
+    """An argument of a function: an array of `size` numbers, ``p`` (the parameters) or ``t`` (a number).
 
     Attributes:
         count: the name of the count that `size` is, ``NV`` say, or nothing.
@@ -48,7 +48,7 @@ class Argument:
 
 @dataclass(frozen=True)
 class Result:
-    """What a function returns: a dense array, its `entries` row-major.
+    """A result of a function: a dense array with its `entries` in row-major order.
 
     Attributes:
         counts: for each extent the name of the count that it is, ``NV`` say, or nothing; none if all are
@@ -130,7 +130,7 @@ class Program:
 
 
 class Status(NamedTuple):
-    """What a function returns where it cannot compute: a number, what that means, and its name."""
+    """A status code other than 0: its number, its meaning and its name."""
 
     number: int
     about: str
@@ -186,7 +186,7 @@ class Listing:
 
 @dataclass(frozen=True, repr=False)
 class Module:
-    """All functions of one model and what their reader must know.
+    """All functions of one model, with the descriptions that are emitted with them.
 
     Attributes:
         name: the prefix of everything emitted; an identifier.
@@ -215,7 +215,7 @@ class Module:
 
 
 def named_listings(module: Module) -> tuple[Listing, ...]:
-    """What has a count and an array of names."""
+    """The listings for which a count and an array of names are emitted."""
     return (
         Listing("q", "NQ", "positions", module.positions),
         Listing("v", "NV", "velocities", module.velocities),
@@ -230,7 +230,7 @@ def counts_of(module: Module) -> dict[str, int]:
 
 
 class Guards(NamedTuple):
-    """What stands between a function and its results.
+    """Conditions and calls that come before the results of a function.
 
     Attributes:
         checks: conditions at which it reports a status instead.
@@ -289,7 +289,7 @@ def operations_of(results: tuple[Result, ...], checks: tuple[Check, ...] = ()) -
 
 
 def leaves(x: Operand) -> int:
-    """How many symbols and numbers stand in an operand that is written out, shared parts as often as used.
+    """The number of symbols and numbers in a fully expanded operand, where shared parts are repeated.
 
     Example:
         >>> from linegraph.ir.dag import Dag

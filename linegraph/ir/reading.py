@@ -95,7 +95,7 @@ def procedure(function: FunctionType) -> Procedure:
 
 
 class _Text:
-    """A file of algorithms: its functions, its comments, and what its names stand for."""
+    """A file of algorithms: its functions, its comments and the values of its global names."""
 
     def __init__(self, module: ModuleType) -> None:
         source = inspect.getsource(module)
@@ -172,7 +172,7 @@ class _ProcedureReader:
         )
 
     def written(self, body: tuple[Statement, ...]) -> set[str]:
-        """The arrays that are changed, here or by what is called."""
+        """The arrays that a body changes, directly or through the functions it calls."""
         found = set()
         for statement in nested(body):
             if isinstance(statement, Assign) and isinstance(statement.target, ArrayEntry):
@@ -202,7 +202,7 @@ class _ProcedureReader:
         return tuple(made)
 
     def statement(self, node: ast.stmt) -> Iterator[Statement]:
-        """What one statement of Python becomes."""
+        """The statements for one statement of Python."""
         match node:
             case ast.Assign(targets=[target]):
                 yield self.assignment(node, target)
@@ -255,20 +255,20 @@ class _ProcedureReader:
         return For(name, start, stop, step, body)
 
     def target(self, node: ast.expr) -> LocalVariable | ArrayEntry:
-        """What is assigned to."""
+        """The variable or array entry on the left of an assignment."""
         found = self.of.expression(node)
         if not isinstance(found, LocalVariable | ArrayEntry):
             self.text.refuse(node, "only variables and entries of arrays are assigned")
         return found
 
     def assigned(self, node: ast.stmt, target: ast.expr, operator: str, value: ast.expr) -> Assign:
-        """What was declared gets a value of its own kind."""
+        """An assignment to a declared variable or array entry, whose type must match."""
         place, found = self.target(target), self.of.expression(value)
         self.of.alike(node, place, found)
         return Assign(place, operator, found)
 
     def assignment(self, node: ast.Assign, target: ast.expr) -> Statement:
-        """An assignment, or what declares a name."""
+        """An assignment; the first one to a name in a block declares it."""
         if not isinstance(target, ast.Name) or self.scope.knows(target.id):
             return self.assigned(node, target, "", node.value)
         name = target.id

@@ -39,7 +39,7 @@ ANNOTATIONS = {
     "Ints": ProcedureParameter("", ValueKind.INT, array=True),
     "Places": ProcedureParameter("", ValueKind.INT, array=True),
 }
-"""What the annotations of parameters say."""
+"""The type of a parameter, by the text of its annotation."""
 
 _BINARY = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
 _COMPARISONS = {
@@ -54,7 +54,7 @@ _INTRINSICS = {"abs": 1, "sqrt": 1, "float": 1, "larger": 2, "ratio": 2}
 
 
 class Signature(NamedTuple):
-    """What a caller needs to know of a procedure."""
+    """The signature of a procedure, for checking calls of it."""
 
     name: str
     module: bool
@@ -64,7 +64,7 @@ class Signature(NamedTuple):
 
 
 class Known(NamedTuple):
-    """What a name stands for: a number, or an array, of a length where that is known."""
+    """The meaning of a name: a number or an array, with its length if known."""
 
     kind: ValueKind
     array: bool
@@ -111,7 +111,7 @@ class BlockScope:
         self.blocks[-1][name] = Known(kind, array, constant, detail, length)
 
     def knows(self, name: str) -> bool:
-        """Whether a name stands for something here."""
+        """Whether a name is declared in this block or one around it."""
         return any(name in block for block in self.blocks)
 
     def __getitem__(self, name: str) -> Known:

@@ -1,4 +1,4 @@
-"""What the algorithms of emitted code take for rounding, for doubles and for floats.
+"""Numerical bounds of the algorithms in emitted code, for doubles and for floats.
 
 Positions, velocities and rows of J are pure numbers when they are compared with these: they are first
 divided by sizes of the model itself (`linegraph.dynamics.circuit_lengths`).

@@ -1,4 +1,4 @@
-"""Walks through statements and expressions: what stands in them, and the same with other calls."""
+"""Traversal of statements and expressions, and replacement of calls in them."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def nested(body: tuple[Statement, ...]) -> Iterator[Statement]:
 
 
 def operands(x: Expression | ArrayPart) -> Iterator[Expression | ArrayPart]:
-    """What an expression is made of, itself first, arrays as parts."""
+    """An expression and all its subexpressions, itself first; arrays appear as `ArrayPart`."""
     yield x
     match x:
         case ArrayEntry():
@@ -106,7 +106,7 @@ def invocations(body: tuple[Statement, ...]) -> Iterator[Invocation]:
 
 
 def names_read(body: tuple[Statement, ...]) -> set[str]:
-    """The variables and arrays that stand in expressions, those only assigned left out."""
+    """The variables and arrays that a body reads, without those that it only assigns."""
     found: set[str] = set()
     for statement in nested(body):
         for whole in expressions(statement):

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class ValueKind(Enum):
-    """What a variable, a result or the entries of an array are."""
+    """The type of a variable, a result or the entries of an array."""
 
     INT = "int"
     REAL = "real"
@@ -76,7 +76,7 @@ class Detail:
 
 @dataclass(frozen=True)
 class NamedNumber:
-    """A whole number with a name, such as what a function returns."""
+    """A named integer constant, such as the result code of a procedure."""
 
     name: str
     value: int
@@ -294,7 +294,7 @@ class Fail:
 
 @dataclass(frozen=True)
 class Perform:
-    """A call for what it does alone."""
+    """A call as a statement, which returns no value."""
 
     call: Invocation
 

@@ -1,4 +1,4 @@
-"""What emitted functions report where they cannot compute: the one list of statuses, with their numbers.
+"""The status codes of emitted functions: the only list of statuses and their numbers.
 
 A number stands for one status in all functions of a module and in all modules: velocities count from 1, the
 statuses of this list from 900, and what comes after the velocities leaves these numbers out.
@@ -58,7 +58,7 @@ FIRST, LAST = 900, 999
 
 
 def counted(place: int) -> int:
-    """The number of what is counted from 0: from 1 on, without those of `COMMON`.
+    """The status number of the item at an index: 1, 2, ... without the numbers kept for `COMMON`.
 
     Example:
         >>> counted(0), counted(898), counted(899)
