@@ -190,7 +190,7 @@ class _CProcedure:
         return wrapped(f"    return {self.call(last)};", WIDTH)
 
     def may_fail(self, x: Statement) -> bool:
-        """Whether a statement has a status that must be looked at."""
+        """Whether a statement calls a function that may return a status other than OK."""
         if isinstance(x, Use):
             return x.fails
         return isinstance(x, Perform) and x.call.fails

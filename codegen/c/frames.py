@@ -1,4 +1,4 @@
-"""What the functions of emitted C keep on the stack and whom they call: records made as they are written.
+"""Records of the stack frames and calls of emitted C functions, made while these are written.
 
 Functions that are printed from programs and algorithms keep their record while their lines are made. Only
 the few helpers that stand in templates have it here: a variable or a call added to one of these is added

@@ -1,4 +1,4 @@
-"""What stands around a C function that reports a status: finite arguments in, finite results out.
+"""Wrappers of C functions that report a status: they check that arguments and results are finite.
 
 The function itself looks at its arguments, has the work done by another one, which writes into arrays of its
 own, and copies these where all is well. So nothing is written unless the status is that of success.
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def is_needed(module: Module) -> bool:
-    """Whether there are such functions, and so what they share."""
+    """Whether any function reports a status, so that the common helpers are needed."""
     return any(failures.statuses(module).values())
 
 

@@ -1,4 +1,4 @@
-"""The order of a program's lines: what is computed together stands together, and is used soon.
+"""The order of a program's lines: related operations stay together, close to their uses.
 
 The derivation goes over all joints in turn, and again for each sweep, so that in the order of
 construction hundreds of values wait for the sweep that needs them. Here the lines of one label stay

@@ -46,10 +46,10 @@ _KEYWORD = re.compile(r"[A-Z_]+")
 """How keywords of CMake's commands are written: EXPORT, TARGETS, FILE, STATIC and many more."""
 
 _SHOWN = ("forward_dynamics", "equations", "mass_matrix")
-"""What the example of Arduino's calls, the first that there is."""
+"""The functions that the Arduino example may call; it calls the first that is emitted."""
 
 VERSION = "1.0.0"
-"""Of what is emitted: the same model gives the same files, which have no history."""
+"""The version of emitted libraries; it is fixed, so that the same model gives the same files."""
 
 LONGEST = 63
 """Names of Arduino's libraries are at most this long."""

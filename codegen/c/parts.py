@@ -1,4 +1,4 @@
-"""Long functions in parts: what a compiler does for a function takes it more than twice as long for two.
+"""Splits long functions, since compile time grows faster than the length of a function.
 
 A program's lines are cut where few values are known and still needed. These go from part to part in
 an array, in which places are used again.
@@ -26,7 +26,7 @@ _SPREAD = 0.3
 
 @dataclass(frozen=True)
 class CodePart:
-    """Some lines in a row.
+    """Consecutive lines of a function that form one part.
 
     Attributes:
         items: the lines.
@@ -41,7 +41,7 @@ class CodePart:
 
 @dataclass(frozen=True)
 class WorkingPlaces:
-    """Where the values that go from part to part are kept: a place for each node, and how many places."""
+    """The places of values passed between parts: one for each node, and the number of places by type."""
 
     of: dict[int, int]
     count: dict[str, int]
@@ -108,7 +108,7 @@ def places(parts: Sequence[CodePart], kind: Callable[[int], str]) -> WorkingPlac
 
 
 def _cuts(items: Sequence[Item], size: int) -> list[int]:
-    """Before which lines a new part begins."""
+    """The indices of the lines at which new parts begin."""
     before = [0]
     for item in items:
         before.append(before[-1] + item.cost)
@@ -132,7 +132,7 @@ def _cuts(items: Sequence[Item], size: int) -> list[int]:
 
 
 def _alive(items: Sequence[Item]) -> list[int]:
-    """Before each line: how many values are known and still needed."""
+    """Before each line, the number of values that are known and still needed."""
     last = {x: place for place, item in enumerate(items) for x in item.needs}
     change = [0] * (len(items) + 2)
     for place, item in enumerate(items):

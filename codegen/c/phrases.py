@@ -47,7 +47,7 @@ class CPhrases(Phrases):
         return self.test(x)[0]
 
     def test(self, x: Expression) -> tuple[str, int]:
-        """The same, and how tightly it holds together."""
+        """An expression as a condition, with the precedence of its text."""
         if self.is_switch(x):
             return f"{super().held(x)[0]} == 1", COMPARISON
         return super().held(x)

@@ -1,4 +1,4 @@
-"""What the real numbers of emitted C are: doubles, or floats for machines that compute in these alone.
+"""The real numbers of emitted C: doubles, or floats for machines that compute only in floats.
 
 Everything is written for doubles. The same text in floats has other words for the type, for the numbers
 and for the functions of <math.h>, and nothing else; what compares with rounding says so beforehand, through
@@ -16,7 +16,7 @@ from linegraph.errors import ModelError
 from linegraph.ir.functions import ARITY
 
 _COARSER = 2.0**29
-"""How much coarser the rounding of floats is."""
+"""Ratio of the rounding of floats to that of doubles."""
 
 _FUNCTIONS = sorted({*ARITY, "fabs", "fmax", "fmin"} - {"abs", "max", "min", "sign"})
 _WORDS = re.compile(

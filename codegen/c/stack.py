@@ -1,4 +1,4 @@
-"""How much stack the functions of an emitted C file take at most, from the records of what they keep there.
+"""Upper bounds of the stack that the functions of an emitted C file use, from their records.
 
 A function's frame has its variables, its arguments and what a call costs. Without optimisation a compiler
 gives every variable a place of its own; with it, registers take most of them, so that the same sum is an

@@ -111,11 +111,11 @@ class _Writer:
         return self.kind.wide and node.op in ARITY
 
     def type_of(self, index: int) -> str:
-        """The type of a node with a name."""
+        """The type of the variable to which a node is assigned."""
         return self.kind.number if not self.kind.wide or index in self.wide else "double"
 
     def begun(self) -> StackFrame:
-        """The record of a function."""
+        """A new record of a function's stack frame."""
         return StackFrame(statements=0, wide=self.kind.wide, calls=set(self.own))
 
     def definitions(self) -> list[Definition]:

@@ -1,4 +1,4 @@
-"""Running a `Program` as it is, without emitting it: one operation after the other, over floats."""
+"""Interpreter of a `Program`: evaluates its operations in order, in floats."""
 
 from __future__ import annotations
 

@@ -93,12 +93,12 @@ class Program:
     """One function: ``results = name(arguments)``.
 
     Attributes:
-        steps: the nodes that get a name of their own, in an order in which each follows its operands.
+        steps: the nodes that are assigned to variables, each after its operands.
         status: whether it returns a status in languages without exceptions, even if no check can fail.
         turned: indices of differences a - b that are computed as b - a, since only their negative is used.
-        handed: the function that does the same from the constants of `prepare`, where its text is not to
-            stand twice; empty where the function is emitted whole.
-        guarded: indices of divisions that may be by zero, since what uses them checks that first.
+        handed: the function to which the work is delegated, which computes the same from the constants of
+            `prepare`; empty if the function is emitted in full.
+        guarded: indices of divisions whose divisor may be zero; the functions that use them check it.
     """
 
     name: str
@@ -139,14 +139,14 @@ class Status(NamedTuple):
 
 @dataclass(frozen=True)
 class Routine:
-    """A function that iterates or decides while it runs: its body is an algorithm each language has written.
+    """A function with loops or branches, whose body is an algorithm of `linegraph.ir.algorithms`.
 
     Attributes:
-        algorithm: which; the name of a template.
-        statuses: what each status other than 0 means.
+        algorithm: its name in `linegraph.ir.reading.ALGORITHMS`.
+        statuses: the statuses other than 0 that it may return by itself.
         uses: the functions it calls.
-        details: what the algorithm needs to know of this module: numbers and lists of numbers.
-        handed: as of `Program`.
+        details: facts of the model that the algorithm needs: numbers and lists of numbers, by name.
+        handed: as in `Program`.
     """
 
     name: str
@@ -167,9 +167,9 @@ class Listing:
     """Quantities of one kind, listed in the head of a file and by a count and an array of names.
 
     Attributes:
-        symbol: what the quantities are called in formulas, and in the array's name.
+        symbol: the symbol of the quantities in formulas and in the array's name.
         count: the name of their number; empty for those without count and array.
-        heading: what they are, in the plural.
+        heading: the kind of quantity, in the plural.
         sizes: the results that have so many entries.
         groups: in the head of a file, one row each; a group's name and how many quantities it has.
         shown: whether the head of a file lists them.
@@ -225,7 +225,7 @@ def named_listings(module: Module) -> tuple[Listing, ...]:
 
 
 def counts_of(module: Module) -> dict[str, int]:
-    """How many positions, velocities, inputs and the like there are, by the names all languages give them."""
+    """The numbers of positions, velocities, inputs and so on, by the names they have in all languages."""
     return {x.count: len(x.quantities) for x in named_listings(module)} | dict(module.counts)
 
 

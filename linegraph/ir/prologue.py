@@ -1,4 +1,4 @@
-"""The prologue: what parameters alone determine is computed once, by `prepare`, and read by other functions.
+"""The prologue: `prepare` computes all that depends on parameters alone, for use by other functions.
 
 Every function of `is_prepared` gets a twin that takes the constants c in place of the parameters p. Every
 value of parameters alone that it uses is an entry of c, a parameter itself, too; `parameter_constants` brings
@@ -63,10 +63,10 @@ PREPARED = (
 """The functions of simulation and control; the others read what few parameters they need themselves."""
 
 PREPARED_PREFIX = "frame_"
-"""How the names of all functions of frames begin, which belong to these."""
+"""The prefix of functions of frames, all of which are prepared, too."""
 
 SHORT = 100
-"""Functions of fewer operations stay whole: a reader sees what they do."""
+"""Functions with fewer operations are emitted in full, which is easier to read."""
 
 MOST_MORE = 1 / 8
 """A function called alone may take this share more than it would without `prepare`."""
@@ -224,7 +224,7 @@ class _Met:
 
 @dataclass(frozen=True)
 class _Cost:
-    """What a function does, those that it calls included.
+    """The operations of a function, including those of the functions it calls.
 
     Attributes:
         total: its operations.
@@ -250,7 +250,7 @@ class _Handing:
         self._divisors = every - _judged(p for p in programs if isinstance(p, Program))
 
     def of(self, program: T) -> T:
-        """The function, as it is to be emitted."""
+        """The function, with its work delegated to its twin where that pays."""
         return (
             replace(program, handed=program.name + PREPARED_SUFFIX)
             if self._hands(program)
@@ -290,7 +290,7 @@ class _Handing:
 
 
 def _judged(programs: Iterable[Program]) -> frozenset[int]:
-    """What checks of programs are about, whatever its sign, by index."""
+    """The indices of the checked nodes, without changes of sign and absolute values."""
 
     def bare(node: Node) -> Node:
         return bare(node.a) if node.op in ("abs", NEG) else node
@@ -319,7 +319,7 @@ def _twin(program: T, size: int) -> T:
 
 
 def _sized(arguments: Iterable[Argument], size: int) -> tuple[Argument, ...]:
-    """Arguments of a twin where there are so many constants."""
+    """The arguments of a twin, with the number of constants filled in."""
     return tuple(replace(a, size=size) if a.name == "c" else a for a in arguments)
 
 

@@ -1,4 +1,4 @@
-"""Statements: what algorithms become that are written once and printed by every language.
+"""The statements of algorithms, which are written once and printed in every target language.
 
 A `Procedure` is one function of an algorithm. `linegraph.ir.reading` makes procedures from the text of
 Python functions; `linegraph.ir.binding` decides all that depends on the model alone. What is left is what
@@ -29,13 +29,13 @@ class ValueKind(Enum):
 
 @dataclass(frozen=True)
 class Literal:
-    """A number, or true or false."""
+    """A constant number or Boolean."""
 
     value: bool | int | float
 
     @property
     def kind(self) -> ValueKind:
-        """True and false are no whole numbers here."""
+        """The type of the value; a Boolean does not count as a whole number."""
         if isinstance(self.value, bool):
             return ValueKind.BOOL
         return ValueKind.INT if isinstance(self.value, int) else ValueKind.REAL
@@ -43,7 +43,7 @@ class Literal:
 
 @dataclass(frozen=True)
 class Infinity:
-    """A number above all others."""
+    """Infinity, which is larger than all numbers."""
 
     kind: ValueKind = ValueKind.REAL
 
@@ -128,7 +128,7 @@ class Not:
 
 @dataclass(frozen=True)
 class Choice:
-    """One of two values."""
+    """One of two values, depending on a condition."""
 
     test: Expression
     a: Expression
@@ -201,7 +201,7 @@ class Remark:
 
 @dataclass(frozen=True)
 class Constant:
-    """A name for a whole number that the model decides, such as an extent of arrays."""
+    """A named whole number that depends on the model, such as the size of an array."""
 
     name: str
     value: Expression
@@ -209,7 +209,7 @@ class Constant:
 
 @dataclass(frozen=True)
 class ConstantTable:
-    """An array whose entries the model decides; `detail` names them until the model is known."""
+    """A constant array; `detail` names the fact of the model that gives its entries, until they are known."""
 
     name: str
     kind: ValueKind

@@ -1,4 +1,4 @@
-"""Sums collected: a term occurs once in a sum, and so does a number.
+"""Collects sums so that each term occurs once, and at most one number.
 
 The DAG simplifies where a node is made, so that a sum that grows one operation at a time may hold a term
 twice, or one that cancels. Here each sum of a program is seen as a whole, as a linear combination
@@ -28,13 +28,13 @@ if TYPE_CHECKING:
     from linegraph.ir.program import Routine
 
 Key: TypeAlias = "int | tuple[str, Key, Key]"
-"""A term without its number: the index of a node, or a product or quotient from which a number was taken."""
+"""A term without its numeric factor: the index of a node, or a product or quotient of such terms."""
 
 CONSTANT = -1
 """The key of the number that a sum holds."""
 
 ROUNDING = 2.0**-50
-"""What is left of two floats that cancel, relative to them, is nothing."""
+"""Relative bound below which the difference of two floats is taken for zero."""
 
 _SUMS = (ADD, SUB)
 
@@ -65,7 +65,7 @@ class Combination(NamedTuple):
 
     @property
     def better(self) -> bool:
-        """Whether to write the sum anew."""
+        """Whether rewriting the sum saves operations or removes a repeated term or number."""
         if self.risky:
             return False
         if not self.repeats and self.operations < len(self.factors) + 1:
@@ -95,7 +95,7 @@ def collected(program: Program, dag: Dag | None = None) -> Program:
 
 
 def with_sums_collected(programs: Sequence[Program | Routine]) -> tuple[Program | Routine, ...]:
-    """The same for all programs, over one DAG: what they share stays the same node. Routines have no sums."""
+    """Collect the sums of all programs over one DAG, where shared nodes stay shared."""
     dag = Dag()
     found = tuple(collected(x, dag) if isinstance(x, Program) else x for x in programs)
     dag.release()
@@ -103,7 +103,7 @@ def with_sums_collected(programs: Sequence[Program | Routine]) -> tuple[Program 
 
 
 class Sums:
-    """The sums of one program, the last one first, so that it is known what still needs the others.
+    """The sums of one program, visited from last to first, so that all uses of a sum are known.
 
     Attributes:
         nodes: all nodes of the program by index, each after its operands.
@@ -306,11 +306,11 @@ class _Rewriting:
         return self._assembled(program)
 
     def _become(self, x: Operand) -> Operand:
-        """What an operand has become."""
+        """The rewritten operand for an old one."""
         return self._known[x.index] if isinstance(x, Node) else x
 
     def _sum(self, combination: Combination) -> Operand:
-        """The nodes of a linear combination: what has the same factor is added before it is scaled."""
+        """The nodes of a linear combination; terms with equal factors are added before they are scaled."""
         dag = self._dag
         groups: dict[Number | None, tuple[Number, Operand]] = {}
         for key, k in combination.factors.items():
