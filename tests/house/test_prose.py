@@ -10,7 +10,7 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
-from house.rooms import ROOMS, ROOT, files, parsed, room
+from house.rooms import ROOT, files, parsed, room
 from house.test_house import of_click, parameters
 
 from linegraph.ir.reading import ALGORITHMS, WHERE, algorithm
@@ -20,9 +20,6 @@ if TYPE_CHECKING:
 
 FEWEST_WORDS = 4
 FEWEST_ARGUMENTS = 2
-
-PENDING: set[str] = set()
-"""Packages and modules of the root whose docstrings are still to be rewritten. The list is to shrink."""
 
 
 class Public(NamedTuple):
@@ -144,12 +141,7 @@ def offenders() -> dict[str, list[str]]:
 
 
 def test_docstrings_say_more_than_the_name_and_list_arguments() -> None:
-    assert {k: names for k, names in offenders().items() if k not in PENDING} == {}
-
-
-def test_what_is_pending_is_still_to_be_done() -> None:
-    assert set(ROOMS) >= PENDING
-    assert set(offenders()) >= PENDING
+    assert offenders() == {}
 
 
 CITED = re.compile(r"\[([^\[\]]*\b(?:19|20)\d\d\b[^\[\]]*)\]")
