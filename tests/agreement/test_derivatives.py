@@ -197,7 +197,7 @@ def random_point(seed: int) -> tuple[Point, np.random.Generator]:
     return Point(derivation, state.t, state.q, state.v, u), rng
 
 
-@pytest.mark.seeds(range(0, 120, 8), range(120))
+@pytest.mark.seeds(range(0, 120, 16), range(120))
 def test_random_mechanical_systems(seed: int) -> None:
     compare(*random_point(seed))
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 SYSTEMS, STATES, BATCH = 500, 20, 20
 EVERY = range(0, SYSTEMS, BATCH)
-FEW = EVERY[:5:4]
+FEW = EVERY[:5:5]
 """Where batches begin: by default of those systems that are counted below to have every part often."""
 
 EXACT = 1e-12  # relative to 1 + the largest expected entry; measured 1.3e-13

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 TREES, STATES, BATCH = 300, 20, 12
 EVERY = range(0, TREES, BATCH)
-FEW = EVERY[::9]
+FEW = EVERY[::13]
 """Where batches of trees begin, one of each size from 1 to 12 bodies."""
 
 TOLERANCE = (

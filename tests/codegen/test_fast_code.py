@@ -162,7 +162,7 @@ def in_parts(request: pytest.FixtureRequest, name: str, size: int) -> None:
         pytest.skip("large: other sizes do")
 
 
-@pytest.mark.one_in(2)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("size", [5, 60, 1000])
 @pytest.mark.parametrize("name", ["arm", "swing", "rough", "panda", "anymal"])
 def test_order_and_parts_do_not_change_a_bit(
@@ -278,7 +278,7 @@ def batched(library: Compiled, name: str, given: list[Any], n: int, out: list[in
     return [x[16:-16] for x in buffers]
 
 
-@pytest.mark.one_in(3)
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("lanes", [(), (2,), (4,), (8,), (1,)])
 @pytest.mark.parametrize("name", ["arm", "swing", "rough", "panda", "anymal"])
 def test_many_states_are_as_one_by_one(
@@ -337,7 +337,7 @@ def test_the_header_says_what_cannot_be_had_for_many_states(tmp_path: Path) -> N
     assert "_batch" not in codegen.render(samples.arm(), "c")["arm.h"]
 
 
-@pytest.mark.one_in(3)
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("compiler", COMPILERS)
 @pytest.mark.parametrize("name", ["arm", "swing", "rough", "panda", "rlc_ladder"])
 def test_compiles_without_a_warning(name: str, compiler: str, tmp_path: Path) -> None:

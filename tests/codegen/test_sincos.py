@@ -85,7 +85,7 @@ def units(found: float, exact: tuple[int, ...]) -> float:
     return abs(libmp.to_float(libmp.mpf_div(gap, libmp.from_float(last), 53)))
 
 
-@pytest.mark.one_in(2)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("way", WAYS)
 def test_within_two_units_everywhere(
     way: str, given: tuple[Array, list[tuple[int, ...]]], tmp_path: Path

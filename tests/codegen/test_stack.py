@@ -66,7 +66,7 @@ def measured(folder: Path, machine: str, flags: tuple[str, ...]) -> dict[str, in
     return {name.rpartition(":")[2]: depth(name) for name in own}
 
 
-@pytest.mark.one_in(2)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("real", ["double", "float"])
 def test_stack_is_stated_and_kept(name: str, real: str, tmp_path: Path) -> None:
     lacking = targets.missing("gcc", "arm-none-eabi-gcc")

@@ -999,7 +999,7 @@ def test_types_are_what_they_are_called(kind: str) -> None:
 # ---- what is emitted
 
 
-@pytest.mark.one_in(2)
+@pytest.mark.one_in(3)
 @EVERY
 def test_obeys_its_law(name: str, way: Way, find: Callable[[str, Way], System]) -> None:
     """At its edges, by formulas written apart."""
@@ -1012,7 +1012,7 @@ def test_obeys_its_law(name: str, way: Way, find: Callable[[str, Way], System]) 
         assert np.max(np.abs(zero)) <= EXACT * size
 
 
-@pytest.mark.one_in(2)
+@pytest.mark.one_in(3)
 @EVERY
 def test_keeps_its_energy(name: str, way: Way, find: Callable[[str, Way], System]) -> None:
     """What it takes in it stores or turns into heat: by hand, and as the derivation says itself."""
@@ -1123,6 +1123,7 @@ def test_keeps_what_it_says(name: str, find: Callable[[str, Way], System]) -> No
     assert not system.derivation.formulation.network.rates
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("name", sorted(ODD))
 @pytest.mark.parametrize("series", [True, False], ids=["series", "parallel"])
 def test_turning_its_edges_turns_its_variables(

@@ -40,7 +40,7 @@ SMALL = (
 )
 """Models that take little time."""
 
-CELLS = 60
+CELLS = 36
 """How many of their combinations with coordinates and commands are tried by default."""
 
 UNREFUSED = COORDINATES[0]

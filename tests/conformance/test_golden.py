@@ -105,7 +105,7 @@ def test_c_holds(compiled_example: str, tmp_path: Path) -> None:
     assert max(float(line.split()[3]) for line in functions) < 2e-12
 
 
-@pytest.mark.one_in(2)
+@pytest.mark.one_in(4)
 def test_python_holds(example: str, tmp_path: Path) -> None:
     files = emitted(example)
     load(files, example, tmp_path)

@@ -58,7 +58,7 @@ def test_there_are_a_hundred() -> None:
     assert set(DOZEN) <= set(NAMES)
 
 
-@pytest.mark.one_in(2)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("compiler", COMPILERS)
 def test_no_compiler_warns(name: str, compiler: str, tmp_path: Path) -> None:
     lacking = targets.missing(COMPILERS[compiler][0])
@@ -79,7 +79,7 @@ def test_no_compiler_warns(name: str, compiler: str, tmp_path: Path) -> None:
             )
 
 
-@pytest.mark.one_in(2)
+@pytest.mark.one_in(4)
 def test_sanitizers_find_nothing(
     sanitized: str, request: pytest.FixtureRequest, tmp_path: Path
 ) -> None:
@@ -98,7 +98,7 @@ def test_sanitizers_find_nothing(
         assert said.startswith("sum 0 ")
 
 
-@pytest.mark.one_in(2)
+@pytest.mark.one_in(4)
 def test_floats_are_as_good_as_floats_can_be(name: str, tmp_path: Path) -> None:
     module = targets.module(name)
     rng = np.random.default_rng(1)

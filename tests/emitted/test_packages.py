@@ -168,6 +168,7 @@ def test_arduino_library_is_laid_out_as_specified(name: str) -> None:
     assert all(re.search(rf"\b{word}\b", text) for word, _ in words)
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("real", ["double", "float"])
 @pytest.mark.parametrize(
     "name", ["double_pendulum", "anymal_floating", "four_bar", "ring_modulator"]

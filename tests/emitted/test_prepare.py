@@ -101,7 +101,7 @@ def changed(model: lg.Model, rng: np.random.Generator) -> dict[str, float]:
     }
 
 
-@pytest.mark.one_in(2)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("kind", VARIANTS)
 def test_prepared_functions_give_what_the_reference_gives(kind: str, tmp_path: Path) -> None:
     """Every joint type, C and Python, before and after parameters change; moments are not regrouped there."""
@@ -212,7 +212,7 @@ def requested(model: lg.Model) -> list[str]:
     return found
 
 
-@pytest.mark.one_in(2)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_every_prepared_function_is_its_contract_s_equal(name: str, tmp_path: Path) -> None:
     model = modelfile.read(EXAMPLES / name / f"{name}.toml")

@@ -744,6 +744,7 @@ def leg_places(s: System) -> list[int]:
     return [s.py.Q_NAMES.index(f"leg{k}") for k in range(1, 7)]
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("name", QUIET)
 def test_energy_is_conserved_for_10_s(name: str) -> None:
     """At the end of every second, relative to the larger of both energies."""
@@ -778,7 +779,7 @@ def audit(s: System) -> None:
         assert np.max(np.abs(sums)) <= 1e-11 * (1 + np.max(np.abs(powers)))
 
 
-@pytest.mark.one_in(2)
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("name", AUDITED)
 def test_powers_of_all_edges_sum_to_zero(name: str) -> None:
     audit(system(name))
@@ -825,6 +826,7 @@ def unique_reactions(s: System, state: State) -> set[str]:
     return {x for x, change in zip(s.py.REACTION_NAMES, doubt, strict=True) if change <= 1e-9}
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize(("name", "kind"), KINDS)
 def test_other_trees_give_the_same_motion(name: str, kind: str) -> None:
     """Energy, accelerations of all bodies, outputs, unique reactions, and which of them are unique."""

@@ -243,6 +243,7 @@ def test_a_model_without_links_is_refused(tmp_path: Path) -> None:
 # ---- Pinocchio
 
 
+@pytest.mark.one_in(2)
 def test_agrees_with_pinocchio(file: Path, base: str, tmp_path: Path) -> None:
     import pinocchio
     from agreement.test_pinocchio import readable

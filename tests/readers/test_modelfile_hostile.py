@@ -239,6 +239,7 @@ def code_of(line: str) -> list[str]:
     return [*text, ast.dump(ast.Module(ast.parse(files["small.py"]).body[1:], []))]
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("place", ["value", "table", "unit", "about", "name"])
 @pytest.mark.parametrize("payload", [*PAYLOADS, *ASKED])
 def test_nothing_is_executed_that_outputs_ask_for(payload: str, place: str) -> None:

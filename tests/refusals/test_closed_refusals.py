@@ -365,6 +365,7 @@ def lines_of(text: str, tables: tuple[str, ...]) -> set[int]:
     return found
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("name", CASES)
 def test_says_where_and_what(name: str) -> None:
     case = CASES[name]

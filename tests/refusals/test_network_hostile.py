@@ -158,6 +158,7 @@ def require_placed(error: LinegraphError) -> None:
     assert len(str(error)) < 20_000
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize(
     ("name", "place"),
     [
@@ -348,6 +349,7 @@ WRONG = [
 ]
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("kind", COMPONENTS)
 def test_values_of_any_type_are_refused_or_taken(kind: str) -> None:
     """Every key of every type, with values of all types: a model, or an error with a line."""
@@ -671,6 +673,7 @@ def mutated(text: str, draw: random.Random) -> str:
     return "\n".join(lines)
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("example", MUTATED)
 @pytest.mark.parametrize("start", range(0, SOME, 25))
 def test_mutations_are_derived_or_refused(example: str, start: int) -> None:
