@@ -37,8 +37,8 @@ Array = Any
 
 SYSTEMS, STATES, CHUNK = 300, 20, 10
 CHUNKS = range(0, SYSTEMS, CHUNK)
-FEW = CHUNKS[::10]
-"""Of all systems every fifth ten."""
+FEW = CHUNKS[::15]
+"""Ten systems of every hundred and fifty."""
 AUDIT = 1e-11
 """Of the sums of through times across in each subspace, relative to the largest power."""
 BALANCE = 1e-9

@@ -46,7 +46,7 @@ TESTS = (
     test_algorithms_of_a_particle,
     test_network_newton,
 )
-FEW = 150
+FEW = 75
 SWAPPED = {
     ast.Add: ast.Sub,
     ast.Sub: ast.Add,
